@@ -1,0 +1,113 @@
+#include "constraints/convex_sets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "linalg/symmetric2.h"
+
+namespace taut {
+namespace {
+
+void check_bounds(const char* owner, double lower, double upper) {
+  if (!(lower <= upper)) {
+    throw std::invalid_argument(std::string(owner) + ": lower " + std::to_string(lower) + " must not exceed upper " +
+                                std::to_string(upper));
+  }
+}
+
+/// The smoothed projection of a number onto [lower, upper]: how far z moves down, and the slope of the projection.
+struct Smoothed {
+  double correction, slope;
+};
+
+Smoothed smoothed(double z, double lower, double upper, double epsilon) {
+  Smoothed out{0, 1};
+  // One bound: correction (y + r)/2 and slope 1 - (1 + y/r)/2, r = sqrt(y^2 + 4 epsilon), each without cancellation.
+  const auto add = [&](double y, double sign) {
+    const double r = std::sqrt(y * y + 4 * epsilon);
+    out.correction += sign * (y >= 0 ? 0.5 * (y + r) : 2 * epsilon / (r - y));
+    // Between two bounds the slopes' deficits add up; the larger deficit is kept as a slope so that nothing cancels.
+    const double slope = y >= 0 ? 2 * epsilon / (r * (r + y)) : 0.5 * (1 - y / r);
+    const double deficit = y >= 0 ? 0.5 * (1 + y / r) : 2 * epsilon / (r * (r - y));
+    out.slope = slope < out.slope ? slope - (1 - out.slope) : out.slope - deficit;
+  };
+  if (std::isfinite(upper)) add(z - upper, 1.0);
+  if (std::isfinite(lower)) add(lower - z, -1.0);
+  out.slope = std::max(out.slope, 1e-15);
+  return out;
+}
+
+}  // namespace
+
+Box::Box(int dimension, double lower, double upper) : dimension_(dimension), lower_(lower), upper_(upper) {
+  check_bounds("Box", lower, upper);
+}
+
+void Box::project(Index /*element*/, const double* z, double* nearest, double* derivative) const {
+  if (derivative) std::fill_n(derivative, dimension_ * dimension_, 0.0);
+  for (int i = 0; i < dimension_; ++i) {
+    const bool inside = z[i] >= lower_ && z[i] <= upper_;
+    nearest[i] = inside || std::isnan(z[i]) ? z[i] : std::clamp(z[i], lower_, upper_);
+    if (derivative) derivative[i * dimension_ + i] = inside ? 1.0 : 0.0;
+  }
+}
+
+void Box::project_smoothed(Index /*element*/, const double* z, double epsilon, double* nearest,
+                           double* derivative) const {
+  std::fill_n(derivative, dimension_ * dimension_, 0.0);
+  for (int i = 0; i < dimension_; ++i) {
+    const Smoothed s = smoothed(z[i], lower_, upper_, epsilon);
+    nearest[i] = z[i] - s.correction;
+    derivative[i * dimension_ + i] = s.slope;
+  }
+}
+
+SpectralBox::SpectralBox(double lower, double upper) : lower_(lower), upper_(upper) {
+  check_bounds("SpectralBox", lower, upper);
+}
+
+void SpectralBox::project(Index /*element*/, const double* z, double* nearest, double* derivative) const {
+  constexpr double root2 = std::numbers::sqrt2;
+  const Eigen2 pair = eigen2(z[0], z[1] / root2, z[2]);
+  const double y1 = pair.values[0], y2 = pair.values[1];
+  if (y1 <= upper_ && y2 >= lower_) {
+    std::copy_n(z, 3, nearest);
+    if (derivative) Eigen::Map<Matrix3>{derivative}.setIdentity();
+    return;
+  }
+  const double p1 = std::clamp(y1, lower_, upper_), p2 = std::clamp(y2, lower_, upper_);
+  const double c = pair.vectors(0, 0), s = pair.vectors(1, 0);
+  const Vector3 e1(c * c, root2 * c * s, s * s), e2(s * s, -root2 * c * s, c * c);
+  Eigen::Map<Vector3>{nearest} = Eigen::Map<const Vector3>(z) + (p1 - y1) * e1 + (p2 - y2) * e2;
+  if (derivative) {
+    const double slope1 = y1 >= lower_ && y1 <= upper_ ? 1.0 : 0.0, slope2 = y2 >= lower_ && y2 <= upper_ ? 1.0 : 0.0;
+    const double gap = y1 - y2;
+    const double omega = gap > 1e-14 * (std::abs(y1) + std::abs(y2)) ? (p1 - p2) / gap : 0.5 * (slope1 + slope2);
+    const Vector3 e12(-root2 * c * s, c * c - s * s, root2 * c * s);
+    Eigen::Map<Matrix3>{derivative} =
+        slope1 * e1 * e1.transpose() + slope2 * e2 * e2.transpose() + omega * e12 * e12.transpose();
+  }
+}
+
+void SpectralBox::project_smoothed(Index /*element*/, const double* z, double epsilon, double* nearest,
+                                   double* derivative) const {
+  constexpr double root2 = std::numbers::sqrt2;
+  const Eigen2 pair = eigen2(z[0], z[1] / root2, z[2]);
+  const double y1 = pair.values[0], y2 = pair.values[1], gap = y1 - y2;
+  const Smoothed s1 = smoothed(y1, lower_, upper_, epsilon), s2 = smoothed(y2, lower_, upper_, epsilon);
+  const double c = pair.vectors(0, 0), s = pair.vectors(1, 0);
+  const Vector3 e1(c * c, root2 * c * s, s * s), e2(s * s, -root2 * c * s, c * c),
+      e12(-root2 * c * s, c * c - s * s, root2 * c * s);
+  double omega = 0.5 * (s1.slope + s2.slope);
+  if (gap > 1e-7 * (std::abs(y1) + std::abs(y2))) {
+    omega = std::max(1 - (s1.correction - s2.correction) / gap, std::min(s1.slope, s2.slope));
+  }
+  Eigen::Map<Vector3>{nearest} = Eigen::Map<const Vector3>(z) - s1.correction * e1 - s2.correction * e2;
+  Eigen::Map<Matrix3>{derivative} =
+      s1.slope * e1 * e1.transpose() + s2.slope * e2 * e2.transpose() + omega * e12 * e12.transpose();
+}
+
+}  // namespace taut

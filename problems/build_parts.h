@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "dynamics/model.h"
+#include "problems/body_shape.h"
+#include "problems/scene.h"
+
+namespace taut {
+
+/// Adds the scene's pins, strain limits and obstacles to a model whose positions are there. Throws InputError.
+void add_constraints(const Scene& scene, const std::vector<BodyShape>& shapes, Model& model);
+
+/// Adds gravity and the loads to a model whose inertia and pins are there. Throws InputError.
+void add_loads(const Scene& scene, const std::vector<BodyShape>& shapes, Model& model);
+
+}  // namespace taut

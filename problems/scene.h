@@ -1,0 +1,223 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/residuals.h"
+#include "core/types.h"
+#include "energies/membrane.h"
+#include "geometry/grid.h"
+
+namespace taut {
+
+/// A problem file that cannot be used, in one line: "FILE: /json/pointer: found WHAT, allowed: WHAT".
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+  InputError(const std::string& source, const std::string& pointer, std::string_view text)
+      : std::runtime_error(source + ": " + (pointer.empty() ? "/" : pointer) + ": " + std::string(text)) {}
+};
+
+/// The parts of a Scene. They mirror the keys of problem.schema.json, which explains each; here are units and what
+/// reading adds. Angles are radians, directions have length 1, paths are resolved against the problem file.
+namespace scene {
+
+enum class Integrator { implicit_euler, bdf2, generalised_alpha, quasi_static };
+struct Time {
+  Integrator integrator = Integrator::implicit_euler;
+  double step = 0;  ///< s; 1 / steps for quasi_static, so that time k * step always holds
+  int steps = 1;
+  double spectral_radius = 0.8;
+};
+
+struct Grid {
+  Vector2 size{1, 1};  ///< m
+  int cells_x = 1, cells_y = 1;
+  Diagonals diagonals = Diagonals::alternating;
+};
+struct MeshFile {
+  std::filesystem::path path;
+};
+struct Transform {
+  double scale = 1;
+  Vector3 axis = Vector3::UnitZ();
+  double angle = 0;                     ///< rad
+  Vector3 translate = Vector3::Zero();  ///< m
+
+  Vector3 operator()(const Vector3& x) const;
+};
+enum class RestShape { initial, uv, mesh };
+struct Rest {
+  RestShape from = RestShape::initial;
+  std::filesystem::path file;  ///< for RestShape::mesh
+  double scale = 1;
+};
+enum class Mass { lumped, consistent };
+struct Membrane {
+  MembraneLaw law = MembraneLaw::stvk;
+  double young_modulus = 0;  ///< Pa
+  double poisson_ratio = 0;
+};
+struct Bending {
+  double stiffness = 0;  ///< N m
+};
+struct Damping {
+  double mass = 0;       ///< 1/s
+  double stiffness = 0;  ///< s
+};
+struct Body {
+  std::string name;
+  std::variant<Grid, MeshFile> mesh;
+  Transform transform;
+  Rest rest;
+  double thickness = 0;  ///< m
+  double density = 0;    ///< kg/m3
+  Mass mass = Mass::lumped;
+  std::optional<Membrane> membrane;
+  std::optional<Bending> bending;
+  Damping damping;                             ///< zero: none
+  Vector3 initial_velocity = Vector3::Zero();  ///< m/s
+};
+
+struct ByIndex {
+  std::vector<int> vertices;  ///< not yet compared with the mesh
+};
+struct AtCorners {
+  std::vector<std::string> names;  ///< as select_corner() takes them
+};
+struct OnEdges {
+  std::vector<std::string> names;  ///< as select_edge() takes them
+};
+struct InBox {
+  Vector3 min, max;  ///< m
+};
+struct InBall {
+  Vector3 center;  ///< m
+  double radius;   ///< m
+};
+struct NearestTo {
+  std::vector<Vector3> points;  ///< m
+};
+struct InGroup {
+  std::string name;  ///< not yet compared with the mesh
+};
+struct OnBoundary {};
+struct Everything {};
+/// Vertices of one body, at their transformed initial positions. Corners and edges occur on grids only.
+using Selection = std::variant<Everything, ByIndex, AtCorners, OnEdges, InBox, InBall, NearestTo, InGroup, OnBoundary>;
+
+struct Keyframe {
+  double time = 0;                        ///< s
+  Vector3 translation = Vector3::Zero();  ///< m
+  double angle = 0;                       ///< rad
+};
+/// x(t) = point + R(axis, angle(t)) (x - point) + translation(t), with angle(t) = keyframes + t angular_velocity and
+/// translation(t) = keyframes + t velocity.
+struct Motion {
+  std::vector<Keyframe> keyframes;  ///< strictly ascending in time; linear between, constant outside
+  Vector3 axis = Vector3::UnitZ();
+  Vector3 point = Vector3::Zero();     ///< m
+  Vector3 velocity = Vector3::Zero();  ///< m/s
+  double angular_velocity = 0;         ///< rad/s
+
+  /// True where nothing ever moves.
+  bool at_rest() const;
+  /// Where the point that is at x at time 0 would be at `time` (s).
+  Vector3 position(const Vector3& x, double time) const;
+  /// The direction that is d at time 0, at `time` (s).
+  Vector3 direction(const Vector3& d, double time) const;
+};
+
+struct Pin {
+  bool x = true, y = true, z = true;  ///< which coordinates are held
+  Motion motion;
+};
+enum class LimitForm { matrix, singular_values };
+struct StrainLimit {
+  LimitForm form = LimitForm::matrix;
+  std::optional<double> min, max;  ///< singular values; at least one, min <= max
+};
+struct HalfSpace {
+  Vector3 point, normal;  ///< m; towards the allowed side
+  Motion motion;
+};
+struct Sphere {
+  Vector3 center;  ///< m
+  double radius;   ///< m
+  Motion motion;
+};
+struct Constraint {
+  std::string name;
+  int body = 0;  ///< index into Scene::bodies
+  Selection select;
+  std::variant<Pin, StrainLimit, HalfSpace, Sphere> kind;
+};
+
+struct PointLoad {
+  Selection select;
+  Vector3 force;  ///< N at each vertex
+};
+struct EdgeLoad {
+  Selection select;
+  Vector3 force_per_length;  ///< N/m
+};
+struct Pressure {
+  double pressure;  ///< Pa
+};
+struct Wind {
+  Vector3 velocity;    ///< m/s
+  double air_density;  ///< kg/m3
+  double drag;
+};
+struct Load {
+  std::string name;
+  int body = 0;  ///< index into Scene::bodies
+  std::variant<PointLoad, EdgeLoad, Pressure, Wind> kind;
+};
+
+enum class OnFailure { stop, proceed };
+struct Solver {
+  Tolerances tolerance;
+  bool central_path = true;
+  double penalty = 1000;  ///< factor on the automatic first penalty
+  double penalty_growth = 8;
+  int max_outer = 100;
+  int max_newton = 1000;  ///< per step
+  double inner_tolerance_factor = 0.5;
+  OnFailure on_failure = OnFailure::stop;
+};
+
+enum class FrameFormat { vtu, obj, none };
+struct Output {
+  FrameFormat format = FrameFormat::vtu;
+  int every = 1;
+  int pictures = 3;
+  std::optional<Vector3> view;
+};
+
+}  // namespace scene
+
+/// A problem file, read, completed with defaults and checked; meshes are not read yet. Named parts are in order of
+/// name, so that the order of keys in a file changes no bit of a result.
+struct Scene {
+  std::string name, description, look_for;
+  std::string source;  ///< how errors call the file; InputError(scene.source, "/constraints/limit/select", ...) fits
+  scene::Time time;
+  Vector3 gravity = Vector3::Zero();  ///< m/s2
+  std::vector<scene::Body> bodies;
+  std::vector<scene::Constraint> constraints;
+  std::vector<scene::Load> loads;
+  scene::Solver solver;
+  scene::Output output;
+  /// The completed document as JSON text: keys sorted, overrides applied, mesh paths absolute. It reads as a problem
+  /// file from anywhere.
+  std::string document;
+  std::string hash;  ///< 16 hex digits, see read_scene.h
+};
+
+}  // namespace taut

@@ -1,0 +1,307 @@
+#include "problems/scene_from_json.h"
+
+#include <fmt/format.h>
+
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+namespace taut {
+
+namespace {
+
+using Json = nlohmann::json;
+using namespace scene;
+
+/// The schema has admitted the text, so that one of the options matches.
+template <class Enum>
+Enum choose(const Json& text, std::initializer_list<std::pair<std::string_view, Enum>> options) {
+  for (const auto& [name, value] : options)
+    if (text.get_ref<const std::string&>() == name) return value;
+  throw std::logic_error("problem.schema.json allows \"" + text.get<std::string>() + "\", read_scene does not");
+}
+
+Vector3 vector(const Json& json) { return {json[0].get<double>(), json[1].get<double>(), json[2].get<double>()}; }
+double radians(const Json& degrees) { return degrees.get<double>() * std::numbers::pi / 180; }
+
+std::optional<double> optional_number(const Json& json, const char* key) {
+  return json.contains(key) ? std::optional<double>(json[key].get<double>()) : std::nullopt;
+}
+
+/// Turns a completed document into a Scene and checks what a schema cannot say.
+class SceneReader {
+ public:
+  SceneReader(std::filesystem::path folder, std::string source)
+      : folder_(std::move(folder)), source_(std::move(source)) {}
+
+  Scene read(const Json& json, const std::string& default_name) {
+    Scene result;
+    result.name = json.value("name", default_name);
+    result.description = json["description"];
+    result.look_for = json["look_for"];
+    result.source = source_;
+    result.time = time(json["time"]);
+    result.gravity = vector(json["gravity"]);
+    for (const auto& [name, value] : json["bodies"].items()) result.bodies.push_back(body(name, value));
+    bodies_ = &result.bodies;
+    for (const auto& [name, value] : json["constraints"].items()) result.constraints.push_back(constraint(name, value));
+    for (const auto& [name, value] : json["loads"].items()) result.loads.push_back(load(name, value));
+    result.solver = solver(json["solver"]);
+    result.output = output(json["output"]);
+    return result;
+  }
+
+ private:
+  std::filesystem::path folder_;
+  std::string source_;
+  const std::vector<Body>* bodies_ = nullptr;
+
+  [[noreturn]] void refuse(const std::string& pointer, const std::string& found, const std::string& allowed) const {
+    throw InputError(source_, pointer, "found " + found + ", allowed: " + allowed);
+  }
+
+  Vector3 direction(const Json& json, const std::string& pointer) const {
+    const Vector3 d = vector(json);
+    const double largest = d.cwiseAbs().maxCoeff();
+    if (largest == 0) refuse(pointer, "[0, 0, 0]", "a vector that is not zero");
+    return (d / largest).normalized();  // the squares of 1e-200 would vanish, those of 1e200 overflow
+  }
+
+  std::filesystem::path mesh_path(const Json& json, const std::string& pointer) const {
+    const std::filesystem::path path = folder_ / json.get<std::string>();
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored))
+      refuse(pointer, json.dump(-1, ' ', false, Json::error_handler_t::replace),
+             "an existing file (looked for " + path.string() + ")");
+    return path;
+  }
+
+  Time time(const Json& json) const {
+    Time result;
+    result.integrator = choose<Integrator>(json["integrator"], {{"implicit_euler", Integrator::implicit_euler},
+                                                                {"bdf2", Integrator::bdf2},
+                                                                {"generalised_alpha", Integrator::generalised_alpha},
+                                                                {"static", Integrator::quasi_static}});
+    result.steps = json["steps"];
+    result.spectral_radius = json["spectral_radius"];
+    if (result.integrator == Integrator::quasi_static) {
+      result.step = 1.0 / result.steps;
+    } else if (json.contains("step")) {
+      result.step = json["step"];
+    } else {
+      throw InputError(source_, "/time/step", "missing, allowed: a number > 0, in s (only \"static\" goes without)");
+    }
+    return result;
+  }
+
+  Body body(const std::string& name, const Json& json) const {
+    const std::string pointer = "/bodies/" + name;
+    Body result;
+    result.name = name;
+    if (json["mesh"].contains("grid"))
+      result.mesh = grid(json["mesh"]["grid"]);
+    else
+      result.mesh = MeshFile{mesh_path(json["mesh"]["file"], pointer + "/mesh/file")};
+    result.transform = transform(json["transform"], pointer + "/transform");
+    result.rest = rest(json["rest"], pointer + "/rest");
+    result.thickness = json["thickness"];
+    result.density = json["density"];
+    result.mass = choose<Mass>(json["mass"], {{"lumped", Mass::lumped}, {"consistent", Mass::consistent}});
+    if (json.contains("membrane")) {
+      const Json& membrane = json["membrane"];
+      const MembraneLaw law = choose<MembraneLaw>(
+          membrane["law"], {{"stvk", MembraneLaw::stvk}, {"neo_hookean", MembraneLaw::neo_hookean}});
+      result.membrane = scene::Membrane{law, membrane["young_modulus"], membrane["poisson_ratio"]};
+    }
+    if (json.contains("bending")) result.bending = Bending{json["bending"]["stiffness"]};
+    result.damping = {json["damping"]["mass"], json["damping"]["stiffness"]};
+    result.initial_velocity = vector(json["initial_velocity"]);
+    return result;
+  }
+
+  static Grid grid(const Json& json) {
+    return {{json["size"][0].get<double>(), json["size"][1].get<double>()},
+            json["cells"][0],
+            json["cells"][1],
+            choose<Diagonals>(json["diagonals"], {{"alternating", Diagonals::alternating},
+                                                  {"left", Diagonals::left},
+                                                  {"right", Diagonals::right},
+                                                  {"union_jack", Diagonals::union_jack}})};
+  }
+
+  Transform transform(const Json& json, const std::string& pointer) const {
+    Transform result;
+    result.scale = json["scale"];
+    if (json.contains("rotate")) {
+      result.axis = direction(json["rotate"]["axis"], pointer + "/rotate/axis");
+      result.angle = radians(json["rotate"]["degrees"]);
+    }
+    result.translate = vector(json["translate"]);
+    return result;
+  }
+
+  Rest rest(const Json& json, const std::string& pointer) const {
+    Rest result;
+    result.from = choose<RestShape>(
+        json["from"], {{"initial", RestShape::initial}, {"uv", RestShape::uv}, {"mesh", RestShape::mesh}});
+    result.scale = json["scale"];
+    if (result.from == RestShape::mesh) {
+      if (!json.contains("file"))
+        throw InputError(source_, pointer + "/file", "missing, allowed: a mesh file (\"from\" is \"mesh\")");
+      result.file = mesh_path(json["file"], pointer + "/file");
+    } else if (json.contains("file")) {
+      refuse(pointer + "/file", json["file"].dump(), "no file unless \"from\" is \"mesh\"");
+    }
+    return result;
+  }
+
+  int body_index(const Json& json, const std::string& pointer) const {
+    const std::string name = json["body"];
+    std::string names;
+    for (std::size_t i = 0; i < bodies_->size(); ++i) {
+      if ((*bodies_)[i].name == name) return static_cast<int>(i);
+      names += (i == 0 ? "" : ", ") + (*bodies_)[i].name;
+    }
+    refuse(pointer + "/body", json["body"].dump(), names);
+  }
+
+  scene::Constraint constraint(const std::string& name, const Json& json) const {
+    const std::string pointer = "/constraints/" + name;
+    scene::Constraint result;
+    result.name = name;
+    result.body = body_index(json, pointer);
+    result.select = selection(json["select"], result.body, pointer + "/select");
+    const std::string type = json["type"];
+    if (type == "pin") {
+      const std::string axes = json["axes"];
+      const auto held = [&axes](char axis) { return axes.find(axis) != std::string::npos; };
+      result.kind = Pin{held('x'), held('y'), held('z'), motion(json["motion"], pointer + "/motion")};
+    } else if (type == "strain_limit") {
+      result.kind = strain_limit(json, pointer);
+    } else if (type == "half_space") {
+      result.kind = HalfSpace{vector(json["point"]), direction(json["normal"], pointer + "/normal"),
+                              motion(json["motion"], pointer + "/motion")};
+    } else {
+      result.kind = Sphere{vector(json["center"]), json["radius"], motion(json["motion"], pointer + "/motion")};
+    }
+    return result;
+  }
+
+  StrainLimit strain_limit(const Json& json, const std::string& pointer) const {
+    StrainLimit result;
+    result.form = choose<LimitForm>(json["form"],
+                                    {{"matrix", LimitForm::matrix}, {"singular_values", LimitForm::singular_values}});
+    result.min = optional_number(json, "min");
+    result.max = optional_number(json, "max");
+    if (!result.min && !result.max)
+      throw InputError(source_, pointer, "found neither \"min\" nor \"max\", allowed: at least one of them");
+    if (result.min && result.max && *result.min > *result.max)
+      refuse(pointer + "/min", json["min"].dump(), "a number <= max, which is " + json["max"].dump());
+    return result;
+  }
+
+  Selection selection(const Json& json, int body, const std::string& pointer) const {
+    const std::string kind = json.begin().key();
+    const Json& value = json.begin().value();
+    if ((kind == "corners" || kind == "edges") &&
+        !std::holds_alternative<Grid>((*bodies_)[static_cast<std::size_t>(body)].mesh))
+      refuse(pointer, "\"" + kind + "\" of a body with a mesh file", "corners and edges of grids only");
+    if (kind == "vertices") return ByIndex{value.get<std::vector<int>>()};
+    if (kind == "corners") return AtCorners{value.get<std::vector<std::string>>()};
+    if (kind == "edges") return OnEdges{value.get<std::vector<std::string>>()};
+    if (kind == "box") return box(value, pointer + "/box");
+    if (kind == "sphere") return InBall{vector(value["center"]), value["radius"]};
+    if (kind == "group") return InGroup{value};
+    if (kind == "boundary") return OnBoundary{};
+    if (kind == "all") return Everything{};
+    NearestTo result;
+    for (const Json& point : value) result.points.push_back(vector(point));
+    return result;
+  }
+
+  InBox box(const Json& json, const std::string& pointer) const {
+    const InBox result{vector(json["min"]), vector(json["max"])};
+    for (int i = 0; i < 3; ++i)
+      if (result.min[i] > result.max[i])
+        refuse(fmt::format("{}/min/{}", pointer, i), json["min"][i].dump(),
+               "a number <= that of max, which is " + json["max"][i].dump());
+    return result;
+  }
+
+  Motion motion(const Json& json, const std::string& pointer) const {
+    Motion result;
+    result.velocity = vector(json["velocity"]);
+    result.point = vector(json["point"]);
+    result.angular_velocity = radians(json["degrees_per_second"]);
+    bool rotates = result.angular_velocity != 0;
+    const Json& keyframes = json["keyframes"];
+    for (std::size_t i = 0; i < keyframes.size(); ++i) {
+      const Json& frame = keyframes[i];
+      result.keyframes.push_back({frame["time"], vector(frame["translation"]), radians(frame["degrees"])});
+      rotates = rotates || result.keyframes.back().angle != 0;
+      if (i > 0 && !(keyframes[i - 1]["time"] < frame["time"]))
+        refuse(fmt::format("{}/keyframes/{}/time", pointer, i), frame["time"].dump(),
+               "a number > the previous keyframe's, " + keyframes[i - 1]["time"].dump());
+    }
+    if (json.contains("axis"))
+      result.axis = direction(json["axis"], pointer + "/axis");
+    else if (rotates)
+      throw InputError(source_, pointer + "/axis", "missing, allowed: a vector that is not zero (there is a rotation)");
+    return result;
+  }
+
+  Load load(const std::string& name, const Json& json) const {
+    const std::string pointer = "/loads/" + name;
+    Load result;
+    result.name = name;
+    result.body = body_index(json, pointer);
+    const std::string type = json["type"];
+    if (type == "point_load") {
+      result.kind = PointLoad{selection(json["select"], result.body, pointer + "/select"), vector(json["force"])};
+    } else if (type == "edge_load") {
+      result.kind =
+          EdgeLoad{selection(json["select"], result.body, pointer + "/select"), vector(json["force_per_length"])};
+    } else if (type == "pressure") {
+      result.kind = Pressure{json["pressure"]};
+    } else {
+      result.kind = Wind{vector(json["velocity"]), json["air_density"], json["drag"]};
+    }
+    return result;
+  }
+
+  static scene::Solver solver(const Json& json) {
+    scene::Solver result;
+    const Json& tolerance = json["tolerance"];
+    result.tolerance = {tolerance["stationarity"], tolerance["feasibility"], tolerance["complementarity"]};
+    result.central_path = json["central_path"];
+    result.penalty = json["penalty"];
+    result.penalty_growth = json["penalty_growth"];
+    result.max_outer = json["max_outer"];
+    result.max_newton = json["max_newton"];
+    result.inner_tolerance_factor = json["inner_tolerance_factor"];
+    result.on_failure =
+        choose<OnFailure>(json["on_failure"], {{"stop", OnFailure::stop}, {"continue", OnFailure::proceed}});
+    return result;
+  }
+
+  Output output(const Json& json) const {
+    Output result;
+    result.format = choose<FrameFormat>(
+        json["format"], {{"vtu", FrameFormat::vtu}, {"obj", FrameFormat::obj}, {"none", FrameFormat::none}});
+    result.every = json["every"];
+    result.pictures = json["pictures"];
+    if (json.contains("view")) result.view = direction(json["view"], "/output/view");
+    return result;
+  }
+};
+
+}  // namespace
+
+Scene scene_from_json(const Json& document, const std::filesystem::path& folder, const std::string& source,
+                      const std::string& default_name) {
+  return SceneReader(folder, source).read(document, default_name);
+}
+
+}  // namespace taut

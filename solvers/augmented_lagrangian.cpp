@@ -1,0 +1,375 @@
+#include "solvers/augmented_lagrangian.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <deque>
+#include <stdexcept>
+
+#include "core/stopwatch.h"
+#include "solvers/eliminated_slack.h"
+
+namespace taut {
+
+void AugmentedLagrangianOptions::validate() const {
+  const auto require = [](bool ok, const char* what) {
+    if (!ok) throw std::invalid_argument(std::string("AugmentedLagrangianOptions: ") + what);
+  };
+  tolerances.validate();
+  newton.validate();
+  central_path.validate();
+  require(penalty > 0, "penalty must be positive");
+  require(penalty_growth > 1, "penalty_growth must exceed 1");
+  require(max_penalty_growth >= 1, "max_penalty_growth must be at least 1");
+  require(wanted_decrease > 0 && wanted_decrease < 1, "wanted_decrease must be between 0 and 1");
+  require(inner_tolerance_factor > 0 && inner_tolerance_factor < 1,
+          "inner_tolerance_factor must be between 0 and 1 (1 and above cycles)");
+  require(max_outer >= 1 && max_newton >= 1, "max_outer and max_newton must be at least 1");
+  require(threads >= 1, "threads must be at least 1");
+}
+
+/// What is kept from solve to solve of the same topology.
+struct AugmentedLagrangian::Workspace {
+  std::uint64_t topology = 0;
+  std::deque<EliminatedSlack> slacks;
+  Assembly assembly;
+  Cholesky cholesky;
+
+  Workspace(const Problem& problem, int threads)
+      : topology(problem.topology),
+        slacks(problem.constraints.size() ? make_slacks(problem) : std::deque<EliminatedSlack>{}),
+        assembly(problem.size(), terms(problem), problem.fixed_variables, threads),
+        cholesky((assembly.set_order(fill_reducing_order(assembly.graph())), assembly.matrix()), threads) {}
+
+  static std::deque<EliminatedSlack> make_slacks(const Problem& problem) {
+    std::deque<EliminatedSlack> slacks;
+    for (const Constraint* constraint : problem.constraints) slacks.emplace_back(*constraint);
+    return slacks;
+  }
+  std::vector<const Energy*> terms(const Problem& problem) const {
+    std::vector<const Energy*> all = problem.energies;
+    for (const EliminatedSlack& slack : slacks) all.push_back(&slack);
+    return all;
+  }
+};
+
+/// One call of solve().
+struct AugmentedLagrangian::Run {
+  const AugmentedLagrangianOptions& options;
+  const Problem& problem;
+  const Budget& budget;
+  Workspace& work;
+  Newton newton;
+  Result result;     // what is being improved
+  Residuals judged;  // of `result`
+  std::vector<double> start_penalty;
+  std::vector<double> last_violation;
+  Vector scratch;
+
+  Run(const AugmentedLagrangianOptions& o, const Problem& p, const Budget& b, Workspace& w)
+      : options(o), problem(p), budget(b), work(w), newton(w.assembly, w.cholesky, p.node_size, o.newton) {}
+
+  void start(const WarmStart& warm);
+  double automatic_penalty(const Constraint& constraint) const;
+  Status inner(NewtonState& state);
+  void update(const Vector& x);
+  bool update_penalties();
+  bool closest_compromise(NewtonState& state);
+  bool central_path();
+  void loop();
+  double merit(const Residuals& residuals) const;
+};
+
+/// The ratio of the diagonals that energies and this constraint's J^T w J put on the variables it touches: the penalty
+/// at which both are equally stiff.
+double AugmentedLagrangian::Run::automatic_penalty(const Constraint& constraint) const {
+  std::array<double, max_stencil_width> local, gradient;
+  std::array<double, max_rows> c;
+  std::vector<double> jacobian(max_rows * max_stencil_width), hessian(max_stencil_width * max_stencil_width);
+  Vector touched = Vector::Zero(problem.size());
+  const Stencils& stencils = constraint.stencils();
+  for (Index element = 0; element < stencils.count(); ++element) {
+    stencils.gather(element, result.x, local.data());
+    constraint.evaluate(element, local.data(), c.data(), jacobian.data());
+    for (int k = 0; k < stencils.width(); ++k) {
+      const double square =
+          Eigen::Map<const Vector>(jacobian.data() + k * constraint.rows(), constraint.rows()).squaredNorm();
+      touched[stencils[element][k]] += constraint.weight(element) * square;
+    }
+  }
+  for (int variable : problem.fixed_variables) touched[variable] = 0;
+  double stiffness = 0;
+  for (const Energy* energy : problem.energies) {
+    if (!energy->has_curvature()) continue;
+    const int width = energy->stencils().width();
+    for (Index element = 0; element < energy->stencils().count(); ++element) {
+      energy->stencils().gather(element, result.x, local.data());
+      energy->evaluate(element, local.data(), gradient.data(), hessian.data(), Curvature::positive_semidefinite);
+      for (int k = 0; k < width; ++k) {
+        if (touched[energy->stencils()[element][k]] > 0) stiffness += hessian[static_cast<std::size_t>(k * width + k)];
+      }
+    }
+  }
+  const double rows = touched.sum();
+  return rows > 0 && stiffness > 0 && std::isfinite(stiffness / rows) ? stiffness / rows : 1.0;
+}
+
+void AugmentedLagrangian::Run::start(const WarmStart& warm) {
+  result.x = problem.initial_guess;
+  for (std::size_t i = 0; i < problem.fixed_variables.size(); ++i) {
+    result.x[problem.fixed_variables[i]] = problem.fixed_values[static_cast<Index>(i)];
+  }
+  for (std::size_t k = 0; k < work.slacks.size(); ++k) {
+    EliminatedSlack& slack = work.slacks[k];
+    const Index rows = slack.multipliers().size();
+    slack.set_multipliers(k < warm.multipliers.size() ? warm.multipliers[k] : Vector(Vector::Zero(rows)));
+    const double automatic = k < warm.penalties.size() && warm.penalties[k] > 0
+                                 ? warm.penalties[k]
+                                 : options.penalty * automatic_penalty(slack.constraint());
+    slack.set_penalty(automatic);
+    start_penalty.push_back(automatic);
+    result.multipliers.push_back(slack.multipliers());
+    result.penalties.push_back(automatic);
+  }
+  judged = residuals(problem, result);
+}
+
+/// Minimises over x until its residual is small against the force that the multiplier update would change.
+Status AugmentedLagrangian::Run::inner(NewtonState& state) {
+  const double smallest = 0.5 * options.tolerances.stationarity * judged.force_scale;
+  return newton.minimise(
+      state,
+      [&](const NewtonState& now) {
+        if (now.nodal_norm <= smallest) return true;
+        if (result.counts.linear_solves >= options.max_newton) return true;
+        scratch.setZero(problem.size());
+        for (const EliminatedSlack& slack : work.slacks) slack.add_update_force(now.x, scratch);
+        for (int variable : problem.fixed_variables) scratch[variable] = 0;
+        return now.nodal_norm <= options.inner_tolerance_factor * nodal_max_norm(scratch, problem.node_size);
+      },
+      budget, result.counts, result.timings);
+}
+
+/// lambda <- lambda+ at x, and judges the outcome.
+void AugmentedLagrangian::Run::update(const Vector& x) {
+  result.x = x;
+  ++result.counts.outer;
+  for (std::size_t k = 0; k < work.slacks.size(); ++k) {
+    EliminatedSlack& slack = work.slacks[k];
+    // Constraint values are of order one (squared stretches) or the scene's size, so this bounds lambda far above any
+    // feasible problem's.
+    const double cap = 1e6 * start_penalty[k] * slack.constraint().violation_scale();
+    slack.updated_multipliers(x, cap, result.multipliers[k]);
+    slack.set_multipliers(result.multipliers[k]);
+  }
+  judged = residuals(problem, result);
+}
+
+/// Raises the penalty of each constraint whose violation did not fall as wanted; false where one that should be raised
+/// cannot be.
+bool AugmentedLagrangian::Run::update_penalties() {
+  bool room = true;
+  for (std::size_t k = 0; k < work.slacks.size(); ++k) {
+    const double relative = judged.violations[k].max / work.slacks[k].constraint().violation_scale();
+    const bool too_slow =
+        relative > options.tolerances.feasibility && relative > options.wanted_decrease * last_violation[k];
+    last_violation[k] = relative;
+    if (!too_slow) continue;
+    const double grown = work.slacks[k].penalty() * options.penalty_growth;
+    if (grown > options.max_penalty_growth * start_penalty[k]) {
+      room = false;
+    } else {
+      work.slacks[k].set_penalty(grown);
+    }
+  }
+  return room;
+}
+
+double AugmentedLagrangian::Run::merit(const Residuals& r) const {
+  if (!r.finite) return std::numeric_limits<double>::infinity();
+  const Tolerances& t = options.tolerances;
+  return std::max(
+      {r.stationarity / t.stationarity, r.feasibility / t.feasibility, r.complementarity / t.complementarity});
+}
+
+/// Minimises the violation, with the energies as a weak tie-breaker, from state.x; true where that leaves it violated
+/// and stationary.
+bool AugmentedLagrangian::Run::closest_compromise(NewtonState& state) {
+  for (std::size_t k = 0; k < work.slacks.size(); ++k) {
+    work.slacks[k].set_multipliers(Vector::Zero(work.slacks[k].multipliers().size()));
+    work.slacks[k].set_penalty(1e3 * start_penalty[k]);
+  }
+  double scale = 0;
+  newton.minimise(
+      state,
+      [&](const NewtonState& now) {
+        // The forces of the penalised violation, term by term, are the scale on which their sum has to vanish.
+        Result probe;
+        probe.x = now.x;
+        for (const EliminatedSlack& slack : work.slacks) {
+          probe.multipliers.emplace_back();
+          slack.updated_multipliers(now.x, std::numeric_limits<double>::infinity(), probe.multipliers.back());
+        }
+        scale = residuals(problem, probe).force_scale;
+        return now.nodal_norm <= 1e-4 * scale || result.counts.linear_solves >= options.max_newton;
+      },
+      budget, result.counts, result.timings);
+  for (EliminatedSlack& slack : work.slacks) {
+    Vector stiff;
+    slack.updated_multipliers(state.x, std::numeric_limits<double>::infinity(), stiff);
+    slack.set_multipliers(stiff);
+  }
+  return state.nodal_norm <= 1e-3 * scale;
+}
+
+/// Replaces `projected` by the multipliers of `slack`, but zero in elements where `projected` is zero and the norm is
+/// below 1e-6 of the largest.
+static void keep_significant(const EliminatedSlack& slack, Vector& projected) {
+  const Vector& own = slack.multipliers();
+  const int rows = slack.constraint().rows();
+  double largest = 0;
+  for (Index first = 0; first < own.size(); first += rows) largest = std::max(largest, own.segment(first, rows).norm());
+  for (Index first = 0; first < own.size(); first += rows) {
+    const bool negligible =
+        projected.segment(first, rows).isZero(0) && own.segment(first, rows).norm() <= 1e-6 * largest;
+    if (!negligible) projected.segment(first, rows) = own.segment(first, rows);
+  }
+}
+
+/// Tries the central path from the warm start; on success `result` and `judged` hold the solution, else the warm start
+/// is restored.
+bool AugmentedLagrangian::Run::central_path() {
+  if (!options.central_path.enabled || work.slacks.empty()) return false;
+  const Result start = result;
+  const Residuals start_judged = judged;
+  for (EliminatedSlack& slack : work.slacks) slack.set_penalty(options.central_path.penalty_fraction * slack.penalty());
+  Vector x = result.x;
+  const bool solved = follow_central_path(
+      work.assembly, work.cholesky, work.slacks, problem.node_size, judged.force_scale,
+      options.tolerances.stationarity * judged.force_scale, options.central_path, x,
+      [&](const Vector& candidate) {
+        result.x = candidate;
+        // Projected multipliers vanish where a constraint is not active; the path's own are positive everywhere, but
+        // where many are weak their forces balance better, so they come second, without those that are negligible.
+        for (std::size_t k = 0; k < work.slacks.size(); ++k) {
+          work.slacks[k].updated_multipliers(candidate, std::numeric_limits<double>::infinity(), result.multipliers[k]);
+        }
+        judged = residuals(problem, result);
+        if (judged.within(options.tolerances)) return true;
+        for (std::size_t k = 0; k < work.slacks.size(); ++k) keep_significant(work.slacks[k], result.multipliers[k]);
+        judged = residuals(problem, result);
+        return judged.within(options.tolerances);
+      },
+      budget, result.counts, result.timings);
+  for (std::size_t k = 0; k < work.slacks.size(); ++k) work.slacks[k].set_penalty(start_penalty[k]);
+  if (solved) return true;
+  result.x = start.x;
+  result.multipliers = start.multipliers;
+  judged = start_judged;
+  for (std::size_t k = 0; k < work.slacks.size(); ++k) work.slacks[k].set_multipliers(start.multipliers[k]);
+  return false;
+}
+
+void AugmentedLagrangian::Run::loop() {
+  if (central_path()) {
+    result.status = Status::solved;
+    result.message = "residuals within tolerance, along the central path";
+    return;
+  }
+  NewtonState state;
+  state.x = result.x;
+  last_violation.assign(work.slacks.size(), std::numeric_limits<double>::infinity());
+  Result best = result;
+  Residuals best_judged = judged;
+  best_judged.finite = false;
+  double first_violation = -1;
+  int stalls = 0, without_progress = 0;
+
+  const auto finish = [&](Status status, std::string message) {
+    if (status != Status::solved && status != Status::infeasible && merit(best_judged) < merit(judged)) {
+      result.x = best.x;
+      result.multipliers = best.multipliers;
+      judged = best_judged;
+    }
+    result.status = status;
+    result.message = std::move(message);
+  };
+
+  while (true) {
+    const Status inner_status = inner(state);
+    if (inner_status == Status::not_finite)
+      return finish(inner_status, "a value, a force or a Newton step is not finite");
+    update(state.x);
+    if (merit(judged) < merit(best_judged)) {
+      best.x = result.x;
+      best.multipliers = result.multipliers;
+      best_judged = judged;
+    }
+    if (judged.within(options.tolerances)) return finish(Status::solved, "residuals within tolerance");
+    if (inner_status == Status::interrupted) return finish(inner_status, "stopped on request");
+    if (inner_status == Status::time_limit) return finish(inner_status, "out of time");
+    if (result.counts.outer >= options.max_outer || result.counts.linear_solves >= options.max_newton) {
+      return finish(Status::iteration_limit, "iterations used up");
+    }
+    stalls = inner_status == Status::stalled ? stalls + 1 : 0;
+    if (stalls >= 3) return finish(Status::stalled, "the line search finds no further decrease");
+
+    const bool falling = first_violation < 0 || judged.feasibility <= 0.5 * first_violation;
+    without_progress = falling || judged.feasibility <= options.tolerances.feasibility ? 0 : without_progress + 1;
+    if (falling) first_violation = judged.feasibility;
+    const bool room = update_penalties();
+    if (!room || without_progress >= 4) {
+      const std::vector<Vector> bounded = best.multipliers;
+      if (closest_compromise(state)) {
+        result.x = state.x;
+        result.multipliers = bounded;
+        judged = residuals(problem, result);
+        if (judged.feasibility > options.tolerances.feasibility) {
+          return finish(Status::infeasible,
+                        "no nearby point satisfies the constraints; this is the closest compromise");
+        }
+      }
+      if (!room) return finish(Status::stalled, "penalty at its limit");
+      without_progress = 0;
+      first_violation = -1;
+    }
+  }
+}
+
+AugmentedLagrangian::AugmentedLagrangian(AugmentedLagrangianOptions options) : options_(options) {
+  options_.validate();
+}
+AugmentedLagrangian::~AugmentedLagrangian() = default;
+
+AugmentedLagrangian::Size AugmentedLagrangian::size() const {
+  if (!workspace_) return {};
+  return {workspace_->cholesky.factor_flops(), workspace_->cholesky.factor_nonzeros(),
+          workspace_->assembly.memory_bytes() + workspace_->cholesky.memory_bytes()};
+}
+
+Result AugmentedLagrangian::solve(const Problem& problem, const WarmStart& warm, const Budget& budget) {
+  double total = 0, analysis = 0;
+  bool analysed = false;
+  Result result;
+  {
+    const Stopwatch watch(total);
+    if (!workspace_ || workspace_->topology == 0 || workspace_->topology != problem.topology) {
+      const Stopwatch analysis_watch(analysis);
+      problem.validate();
+      workspace_.reset();
+      workspace_ = std::make_unique<Workspace>(problem, options_.threads);
+      analysed = true;
+    }
+    Run run(options_, problem, budget, *workspace_);
+    run.start(warm);
+    run.loop();
+    result = std::move(run.result);
+  }
+  result.timings.total = total;
+  result.timings.analysis = analysis;
+  result.counts.symbolic_analyses = analysed ? 1 : 0;
+  result.counts.matrix_allocations = analysed ? 1 : 0;
+  return result;
+}
+
+}  // namespace taut

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <memory>
+
+#include "core/solver.h"
+#include "solvers/central_path.h"
+#include "solvers/newton.h"
+
+namespace taut {
+
+struct AugmentedLagrangianOptions {
+  Tolerances tolerances;
+  double penalty = 1000;      ///< start, as a multiple of the stiffness of the energies seen by the constraint's rows
+  double penalty_growth = 8;  ///< factor where a violation does not fall fast enough
+  double max_penalty_growth = 1e6;      ///< most that the start may grow in one solve
+  double wanted_decrease = 0.5;         ///< of a constraint's violation from one multiplier update to the next
+  double inner_tolerance_factor = 0.5;  ///< theta: inner residual over the force that the next update would change
+  int max_outer = 100;                  ///< multiplier updates
+  int max_newton = 1000;                ///< linear solves in all
+  int threads = 1;
+  CentralPathOptions central_path;  ///< tried first; the loop of multiplier updates takes over where it fails
+  NewtonOptions newton;
+  void validate() const;
+};
+
+/// The augmented Lagrangian with slacks eliminated by projection (eliminated_slack.h), minimised by a semismooth Newton
+/// method, with multipliers carried from step to step. Pattern, order and symbolic factor are kept while
+/// Problem::topology stays the same.
+///
+/// Statuses: solved (by the residuals); infeasible (penalty grown without the violation following, and the closest
+/// compromise is stationary for the violation); stalled, iteration_limit, time_limit, not_finite, interrupted, each
+/// with the best point seen.
+class AugmentedLagrangian final : public Solver {
+ public:
+  explicit AugmentedLagrangian(AugmentedLagrangianOptions options = {});
+  ~AugmentedLagrangian() override;
+  std::string name() const override { return "augmented_lagrangian"; }
+  Result solve(const Problem& problem, const WarmStart& warm, const Budget& budget) override;
+
+  /// Flops and nonzeros of the factor, and bytes of the kept structures; zero before the first solve.
+  struct Size {
+    double factor_flops = 0, factor_nonzeros = 0;
+    std::size_t bytes = 0;
+  };
+  Size size() const;
+
+ private:
+  struct Workspace;
+  struct Run;
+  AugmentedLagrangianOptions options_;
+  std::unique_ptr<Workspace> workspace_;
+};
+
+}  // namespace taut

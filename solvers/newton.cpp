@@ -1,0 +1,127 @@
+#include "solvers/newton.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/stopwatch.h"
+
+namespace taut {
+
+void NewtonOptions::validate() const {
+  if (max_iterations < 1) throw std::invalid_argument("NewtonOptions: max_iterations must be at least 1");
+  if (max_halvings < 1) throw std::invalid_argument("NewtonOptions: max_halvings must be at least 1");
+  if (!(sufficient_decrease > 0 && sufficient_decrease < 0.5)) {
+    throw std::invalid_argument("NewtonOptions: sufficient_decrease must be between 0 and 0.5");
+  }
+  if (!(guard > 0 && guard < 1)) throw std::invalid_argument("NewtonOptions: guard must be between 0 and 1");
+}
+
+double nodal_max_norm(const Vector& force, int node_size) {
+  double largest = 0;
+  for (Index first = 0; first < force.size(); first += node_size) {
+    const double square = force.segment(first, node_size).squaredNorm();
+    if (!(square <= largest)) largest = square;
+  }
+  return std::sqrt(largest);
+}
+
+Newton::Newton(Assembly& assembly, Cholesky& cholesky, int node_size, NewtonOptions options)
+    : assembly_(assembly), cholesky_(cholesky), node_size_(node_size), options_(options) {
+  options_.validate();
+}
+
+void Newton::evaluate(NewtonState& state, Counts& counts, Timings& timings) {
+  const Stopwatch watch(timings.assembly);
+  ++counts.function_evaluations;
+  state.value = assembly_.gradient(state.x, state.gradient);
+  state.nodal_norm = nodal_max_norm(state.gradient, node_size_);
+}
+
+/// Solves H step = -gradient with the best Hessian that is positive definite; false where none is found.
+bool Newton::direction(const NewtonState& state, Counts& counts, Timings& timings) {
+  const auto factorize = [&](double shift) {
+    const Stopwatch watch(timings.factorization);
+    ++counts.factorizations;
+    return cholesky_.factorize(assembly_.matrix(), shift);
+  };
+  const auto assemble = [&](Curvature curvature) {
+    const Stopwatch watch(timings.assembly);
+    assembly_.hessian(state.x, curvature);
+  };
+  const bool try_exact = curvature_ == Curvature::exact || wait_ == 0;
+  bool positive = false;
+  if (try_exact) {
+    assemble(Curvature::exact);
+    positive = factorize(0);
+    curvature_ = positive ? Curvature::exact : Curvature::positive_semidefinite;
+    if (!positive) {
+      wait_ = patience_;
+      patience_ = std::min(2 * patience_, 64);
+    }
+  }
+  if (!positive) {
+    --wait_;
+    assemble(Curvature::positive_semidefinite);
+    positive = factorize(0);
+    double shift = 0;
+    for (int attempt = 0; !positive && attempt < 12; ++attempt) {
+      // Relative to the stiffest entry: 1e-10, 1e-9, ...
+      shift = shift > 0 ? 10 * shift : 1e-10 * assembly_.matrix().coeffs().abs().maxCoeff();
+      if (!std::isfinite(shift)) return false;
+      positive = factorize(shift);
+    }
+  }
+  if (!positive) return false;
+  const Stopwatch watch(timings.solve);
+  ++counts.linear_solves;
+  assembly_.to_ordered(state.gradient, right_hand_side_);
+  cholesky_.solve(right_hand_side_, solution_);
+  assembly_.from_ordered(solution_, step_);
+  step_ = -step_;
+  return step_.allFinite();
+}
+
+/// Moves `state` along step_; false where no fraction of it decreases the value.
+bool Newton::line_search(NewtonState& state, Counts& counts, Timings& timings) {
+  const double slope = state.gradient.dot(step_);
+  if (!(slope < 0)) return false;
+  // Differences of the value below this are round-off; there the gradient decides.
+  const double noise = 1e-13 * std::abs(state.value) + 1e-300;
+  double fraction = std::min(1.0, options_.guard * assembly_.largest_step(state.x, step_));
+  const double gradient_norm = state.gradient.norm();
+  for (int halving = 0; halving < options_.max_halvings; ++halving, fraction *= 0.5) {
+    trial_.x = state.x + fraction * step_;
+    evaluate(trial_, counts, timings);
+    if (!std::isfinite(trial_.value) || !std::isfinite(trial_.nodal_norm)) continue;
+    const double wanted = options_.sufficient_decrease * fraction * slope;
+    const bool decreased = trial_.value <= state.value + wanted;
+    const bool in_noise = trial_.value <= state.value + noise && trial_.gradient.norm() <= gradient_norm;
+    if (decreased || in_noise) {
+      std::swap(state, trial_);
+      return true;
+    }
+  }
+  return false;
+}
+
+Status Newton::minimise(NewtonState& state, const std::function<bool(const NewtonState&)>& done, const Budget& budget,
+                        Counts& counts, Timings& timings) {
+  evaluate(state, counts, timings);
+  if (!std::isfinite(state.value) || !std::isfinite(state.nodal_norm)) return Status::not_finite;
+  for (int iteration = 0;; ++iteration) {
+    if (done(state)) return Status::solved;
+    if (iteration == options_.max_iterations) return Status::iteration_limit;
+    if (budget.interrupted()) return Status::interrupted;
+    if (budget.out_of_time()) return Status::time_limit;
+    if (!direction(state, counts, timings)) return Status::not_finite;
+    if (!line_search(state, counts, timings)) {
+      if (curvature_ == Curvature::positive_semidefinite) return Status::stalled;
+      curvature_ = Curvature::positive_semidefinite;
+      wait_ = patience_;
+      patience_ = std::min(2 * patience_, 64);
+    }
+  }
+}
+
+}  // namespace taut

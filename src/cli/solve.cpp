@@ -1,0 +1,177 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/progress.h"
+#include "problems/read_scene.h"
+#include "report/terminal_summary.h"
+#include "study/records_json.h"
+#include "study/run.h"
+
+namespace taut {
+namespace fs = std::filesystem;
+namespace {
+
+struct SolveArguments {
+  std::string problem, out, format;
+  std::vector<std::string> settings;
+  int threads = 0;
+  double max_seconds = 0;
+  bool resume = false, json = false, quiet = false;
+};
+
+std::atomic<bool> stop_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler stores to it");
+
+extern "C" void request_stop(int) {
+  // The second time nobody wants to wait for the checkpoint.
+  if (stop_requested.exchange(true)) ::_exit(exit_interrupted);
+}
+
+void install_signal_handlers() {
+  struct sigaction action {};
+  action.sa_handler = request_stop;
+  action.sa_flags = SA_RESTART;
+  ::sigemptyset(&action.sa_mask);
+  ::sigaction(SIGINT, &action, nullptr);
+  ::sigaction(SIGTERM, &action, nullptr);
+}
+
+/// A file, or else the name of a problem in the catalogue.
+fs::path find_problem(const std::string& problem) {
+  std::error_code error;
+  if (fs::is_regular_file(problem, error)) return problem;
+  const bool is_name = problem.find_first_of("/.") == problem.npos;
+  const fs::path listed = catalogue_folder() / (problem + ".json");
+  if (is_name && fs::is_regular_file(listed, error)) return listed;
+  throw UsageError(
+      problem + (is_name ? ": no such file, and no problem of the catalogue (taut list problems)" : ": no such file"));
+}
+
+Overrides overrides_of(const SolveArguments& arguments) {
+  Overrides overrides;
+  for (const std::string& setting : arguments.settings) {
+    const std::size_t equals = setting.find('=');
+    if (equals == setting.npos || equals == 0)
+      throw UsageError("--set " + setting + ": expected KEY=VALUE, as in time.steps=10");
+    overrides.emplace_back(setting.substr(0, equals), setting.substr(equals + 1));
+  }
+  if (!arguments.format.empty()) overrides.emplace_back("output.format", arguments.format);
+  return overrides;
+}
+
+std::string progress_note(const StepRecord& record) {
+  if (record.status != Status::solved) return fmt::format("step {}: {}", record.step, to_string(record.status));
+  return fmt::format("{} Newton systems, residual {:.0e}", record.counts.linear_solves, record.residuals.stationarity);
+}
+
+int exit_code(Status status) {
+  if (status == Status::solved) return exit_solved;
+  return status == Status::interrupted ? exit_interrupted : exit_not_solved;
+}
+
+int solve(const SolveArguments& arguments) {
+  if (arguments.resume && arguments.out.empty())
+    throw UsageError("--resume needs --out DIR, the directory of the run to go on with");
+  install_signal_handlers();
+  const Scene scene = read_scene(find_problem(arguments.problem), overrides_of(arguments));
+
+  std::unique_ptr<Progress> progress;
+  RunOptions options;
+  options.folder = arguments.out;
+  options.resume = arguments.resume;
+  options.threads = arguments.threads;
+  options.max_seconds = arguments.max_seconds;
+  options.stop = &stop_requested;
+  options.version = TAUT_VERSION;
+  if (!arguments.quiet) {
+    options.on_start = [&](int done) {
+      progress = std::make_unique<Progress>(scene.name, scene.time.steps, stderr, done);
+    };
+    options.on_step = [&](const StepRecord& record) {
+      if (record.status != Status::solved) {
+        progress->clear();
+        fmt::print(stderr, "step {}: {}: {}\n", record.step, to_string(record.status), record.message);
+      }
+      progress->update(record.step, progress_note(record));
+    };
+  }
+  const RunSummary summary = run(scene, options);
+  if (progress) progress->finish();
+
+  const std::string text = arguments.json    ? summary_text(summary)
+                           : arguments.quiet ? ""
+                                             : terminal_summary(summary, arguments.out);
+  const bool printed = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+  return printed ? exit_code(summary.status) : exit_internal_error;
+}
+
+constexpr const char* footer =
+    "\nWhat happens: every time step is posed as one constrained minimisation and solved; then residuals that\n"
+    "are computed from the problem and the result alone (stationarity, feasibility, complementarity) decide\n"
+    "whether the step counts as solved. A run stops at the first step that is not, unless the problem says\n"
+    "solver.on_failure = continue; what it reached is written either way.\n"
+    "\n"
+    "Files in DIR: summary.json (the verdict), steps.jsonl (a line a step), frames/ and NAME.pvd (ParaView),\n"
+    "pictures/ (SVG), problem.json (the completed problem, which runs again), checkpoint.bin (for --resume).\n"
+    "An earlier run in DIR is replaced; a directory with anything else in it is refused.\n"
+    "\n"
+    "Ctrl-C (or SIGTERM) ends the run after the current linear solve and keeps every finished step; twice, at once.\n"
+    "\n"
+    "Exit codes: 0 every step solved, 1 internal error, 2 wrong usage or input, 3 not every step solved or time over,\n"
+    "130 interrupted.\n"
+    "\n"
+    "Examples:\n"
+    "  taut solve hanging_cloth --out out/cloth\n"
+    "  taut solve problem.json --out out/short --set time.steps=10 --set constraints.limit.max=1.05\n"
+    "  taut solve problem.json --out out/long --max-seconds 3600     and later, the same with --resume\n"
+    "  taut solve problem.json --json | jq .status";
+
+}  // namespace
+
+void add_solve(CLI::App& program, int& code) {
+  CLI::App* command = program.add_subcommand("solve", "Solve a problem and judge every step");
+  command->footer(footer);
+  const auto arguments = std::make_shared<SolveArguments>();
+  command->add_option("PROBLEM", arguments->problem, "A problem file, or the name of one in the catalogue")->required();
+  command->add_option("--out", arguments->out, "Write results to this directory; without it nothing is written")
+      ->type_name("DIR");
+  command
+      ->add_option("--set", arguments->settings,
+                   "Replace a value of the problem for this run, with a dotted key; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command
+      ->add_option("--threads", arguments->threads,
+                   "Threads; 0 or none: the machine's cores, with --resume those of the run")
+      ->type_name("N")
+      ->check(CLI::Range(0, 255));
+  command
+      ->add_option("--max-seconds", arguments->max_seconds, "Stop after this time with what is finished (exit code 3)")
+      ->type_name("S")
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            return std::strtod(text.c_str(), nullptr) > 0 ? "" : "expected a number above 0, got " + text;
+          },
+          "> 0"));
+  command->add_option("--format", arguments->format, "Format of the frames: vtu, obj or none; replaces output.format")
+      ->type_name("FORMAT")
+      ->check(CLI::IsMember({"vtu", "obj", "none"}));
+  command->add_flag("--resume", arguments->resume,
+                    "Go on with the run in DIR; ends with the bits of one never interrupted");
+  command->add_flag("--json", arguments->json, "Print summary.json on standard output, and nothing else there");
+  command->add_flag("--quiet", arguments->quiet, "No progress and no summary: errors only");
+  command->callback([arguments, &code] { code = solve(*arguments); });
+}
+
+}  // namespace taut

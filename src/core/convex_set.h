@@ -1,0 +1,29 @@
+#pragma once
+
+#include "core/types.h"
+
+namespace taut {
+
+/// A closed convex set K in R^m, one per element of a constraint: an interval, an orthant, or the 2x2 spectral box
+/// lo I <= C <= hi I. Eliminating the slack of c(x) in K is the projection onto K; for an orthant that is max(-g -
+/// lambda/mu, 0).
+class ConvexSet {
+ public:
+  virtual ~ConvexSet() = default;
+  virtual int dimension() const = 0;
+
+  /// The nearest point of K to z (both `dimension()` doubles; Euclidean norm). Where `derivative` is not null it
+  /// receives an element of the generalised derivative of the projection: symmetric, eigenvalues in [0, 1],
+  /// column-major.
+  virtual void project(Index element, const double* z, double* nearest, double* derivative) const = 0;
+
+  /// The point that eliminating a slack with a logarithmic barrier gives: against one bound b it minimises |z - p|^2/2
+  /// - epsilon log(b - p), which is p = z - (y + sqrt(y^2 + 4 epsilon))/2 with y = z - b; with two bounds both
+  /// corrections are added. It lies inside K for every z and tends to project() as `epsilon` > 0 (the square of the
+  /// smoothing width) tends to 0. `derivative` is required; eigenvalues in (0, 1), small ones to full precision. [Chen
+  /// and Harker 1993; Kanzow 1996; Smale 1987]
+  virtual void project_smoothed(Index element, const double* z, double epsilon, double* nearest,
+                                double* derivative) const = 0;
+};
+
+}  // namespace taut

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/problem.h"
+#include "core/result.h"
+
+namespace taut {
+
+/// What counts as solved, relative to the scales in Residuals.
+struct Tolerances {
+  double stationarity = 1e-6;     ///< of the largest single nodal force
+  double feasibility = 1e-6;      ///< of each constraint's violation_scale()
+  double complementarity = 1e-6;  ///< see Residuals::complementarity
+  void validate() const;
+};
+
+/// How far one constraint is violated, in its own units.
+struct Violation {
+  std::string constraint;
+  double max = 0;
+  std::string where;  ///< name of the worst element, empty where nothing is violated
+  Index element = -1;
+};
+
+/// How far a result is from optimal, computed from the problem and the result alone (the judge).
+struct Residuals {
+  double stationarity = 0;           ///< max nodal |grad f + sum w J^T lambda| / force_scale, free variables only
+  double stationarity_unscaled = 0;  ///< the same in newtons
+  double force_scale = 0;            ///< largest single nodal force of any term, pin reactions included, N
+  double feasibility = 0;            ///< max over constraints of violation / violation_scale
+  double feasibility_unscaled = 0;   ///< max violation in the constraint's own units
+  double complementarity = 0;  ///< max_e |P(p + lambda/s) - p|, p = P(c), s the constraint's largest |lambda|: 0 iff
+                               ///< lambda is in the normal cone at p
+  double complementarity_unscaled = 0;  ///< the same times s
+  std::string worst_node;               ///< index of the node with the largest stationarity residual
+  std::vector<Violation> violations;    ///< one per constraint, and "pins" where variables are fixed
+  bool finite = true;
+
+  bool within(const Tolerances& tolerances) const;
+};
+
+/// Throws std::invalid_argument where the result's sizes do not fit the problem.
+Residuals residuals(const Problem& problem, const Result& result);
+
+}  // namespace taut

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/types.h"
+
+namespace taut {
+
+/// How a solve ended. `solved` is said by the residuals (core/residuals.h), never by a solver alone.
+enum class Status {
+  solved,           ///< the independent residuals are within tolerance
+  infeasible,       ///< a stationary point of the violation; x is the closest compromise found
+  unbounded,        ///< the objective falls without limit
+  stalled,          ///< no further progress at this precision
+  limit_point,      ///< a static path turned back
+  iteration_limit,  ///< the allowed iterations are used up
+  time_limit,       ///< the allowed seconds are used up
+  not_finite,       ///< a NaN or an infinity that no shorter step avoids
+  interrupted,      ///< a person or the system asked to stop
+};
+std::string_view to_string(Status status);
+/// The status of that name; throws std::invalid_argument for any other text.
+Status status_from_string(std::string_view text);
+
+/// How often a solver did what.
+struct Counts {
+  long outer = 0;                 ///< multiplier updates
+  long linear_solves = 0;         ///< Newton systems solved
+  long factorizations = 0;        ///< numeric factorisations, failed ones included
+  long symbolic_analyses = 0;     ///< orderings and symbolic factorisations
+  long matrix_allocations = 0;    ///< sparse matrices or slot tables allocated
+  long function_evaluations = 0;  ///< values of the objective, with or without derivatives
+  Counts& operator+=(const Counts& other);
+};
+
+/// Wall-clock seconds by phase.
+struct Timings {
+  double total = 0, assembly = 0, analysis = 0, factorization = 0, solve = 0;
+  Timings& operator+=(const Timings& other);
+};
+
+/// What a solver returns. `multipliers` has one vector per constraint: element by element, `rows()` entries each.
+struct Result {
+  Status status = Status::iteration_limit;
+  Vector x;
+  std::vector<Vector> multipliers;
+  std::vector<double> penalties;  ///< at the start of the solve, one per constraint (a warm start for the next); empty
+                                  ///< for solvers that have none
+  Counts counts;
+  Timings timings;
+  std::string message;  ///< one sentence on why it ended so
+};
+
+}  // namespace taut

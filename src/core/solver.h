@@ -1,0 +1,38 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include "core/problem.h"
+#include "core/residuals.h"
+#include "core/result.h"
+
+namespace taut {
+
+/// What an earlier step knows. Empty vectors mean: nothing.
+struct WarmStart {
+  std::vector<Vector> multipliers;
+  std::vector<double> penalties;
+};
+
+/// When to give up early: a point in time, or a flag that a signal handler raises.
+struct Budget {
+  std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
+  const std::atomic<bool>* stop = nullptr;
+
+  bool interrupted() const { return stop && stop->load(std::memory_order_relaxed); }
+  bool out_of_time() const { return std::chrono::steady_clock::now() >= deadline; }
+};
+
+/// Solves one Problem. A solver may keep patterns and symbolic factors between calls (Problem::topology), so `solve` is
+/// not const; what it returns depends on its arguments only.
+class Solver {
+ public:
+  virtual ~Solver() = default;
+  virtual std::string name() const = 0;
+  virtual Result solve(const Problem& problem, const WarmStart& warm, const Budget& budget) = 0;
+};
+
+}  // namespace taut

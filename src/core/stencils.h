@@ -1,0 +1,41 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/types.h"
+
+namespace taut {
+
+/// Which variables each element of a sum touches: `count()` elements of `width()` variables each. Fixed for life.
+class Stencils {
+ public:
+  explicit Stencils(int width) : width_(width) {}
+
+  /// Appends an element; `variables` has width() entries, indices into the vector of unknowns.
+  void add(std::span<const int> variables);
+  /// Appends an element whose variables are the three coordinates of each of these vertices, in order (width = 3 x
+  /// vertices).
+  void add_vertices(std::span<const int> vertices);
+
+  int width() const { return width_; }
+  Index count() const { return static_cast<Index>(variables_.size()) / width_; }
+  const int* operator[](Index element) const { return variables_.data() + element * width_; }
+
+  /// Copies the entries of x that `element` touches to `local` (width() doubles).
+  void gather(Index element, const Vector& x, double* local) const {
+    const int* variables = (*this)[element];
+    for (int i = 0; i < width_; ++i) local[i] = x[variables[i]];
+  }
+
+ private:
+  int width_;
+  std::vector<int> variables_;
+};
+
+/// No stencil is wider than this, so that loops over elements need no allocation.
+inline constexpr int max_stencil_width = 24;
+/// No constraint has more rows per element than this.
+inline constexpr int max_rows = 6;
+
+}  // namespace taut

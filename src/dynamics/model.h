@@ -1,0 +1,61 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/constraint.h"
+#include "core/energy.h"
+#include "energies/dead_load.h"
+#include "energies/inertia.h"
+#include "energies/pressure.h"
+#include "energies/stiffness_damping.h"
+#include "geometry/triangle_mesh.h"
+
+namespace taut {
+
+/// A body's share of the scene's vertices and triangles.
+struct BodyRange {
+  std::string name;
+  int first_vertex = 0, vertices = 0;
+  int first_triangle = 0, triangles = 0;
+};
+
+/// A held coordinate: x[variable] follows its value at every time.
+struct PinnedVariable {
+  int variable = 0;
+  std::function<double(double time)> value;  ///< m at time in s (static: load fraction)
+};
+
+/// A scene as energies and constraints, with nothing in it that depends on the time integrator. Vertex v has the
+/// variables 3v, 3v+1, 3v+2.
+struct Model {
+  std::string name;
+  std::vector<BodyRange> bodies;
+  std::vector<Triangle> triangles;  ///< of all bodies, scene vertex indices
+  Vector positions, velocities;     ///< at the start; m and m/s, 3 entries a vertex
+
+  std::vector<std::unique_ptr<Inertia>> inertia;  ///< one per body with mass
+  std::vector<double> mass_damping;               ///< 1/s, one per inertia
+  std::vector<std::unique_ptr<Energy>> elastic;   ///< membrane, bending
+  struct RayleighDamping {
+    std::unique_ptr<StiffnessDamping> energy;
+    double beta;  ///< s
+  };
+  std::vector<RayleighDamping> stiffness_damping;
+  std::vector<std::unique_ptr<DeadLoad>> dead_loads;  ///< gravity, point and edge loads
+  std::vector<std::unique_ptr<Pressure>> pressures;
+  struct LaggedLoad {
+    std::unique_ptr<DeadLoad> energy;
+    /// Adds the nodal forces at these positions and velocities to the third argument.
+    std::function<void(const Vector&, const Vector&, Vector&)> forces;
+  };
+  std::vector<LaggedLoad> lagged_loads;  ///< wind
+  std::vector<std::unique_ptr<Constraint>> constraints;
+  std::vector<PinnedVariable> pins;  ///< ascending variables
+  /// Moves the obstacles to where they are at `time`; empty where none move.
+  std::vector<std::function<void(double time)>> movers;
+};
+
+}  // namespace taut

@@ -1,0 +1,83 @@
+#include "energies/inertia.h"
+
+#include <algorithm>
+#include <array>
+
+namespace taut {
+
+Inertia Inertia::lumped(std::string name, const std::vector<RestTriangle>& triangles, double surface_density,
+                        Index vertices) {
+  std::vector<double> mass(static_cast<std::size_t>(vertices), 0.0);
+  for (const RestTriangle& triangle : triangles) {
+    for (int vertex : triangle.vertices) mass.at(vertex) += surface_density * triangle.area / 3;
+  }
+  Inertia inertia(std::move(name), 1);
+  for (int vertex = 0; vertex < static_cast<int>(vertices); ++vertex) {
+    if (mass[vertex] == 0) continue;
+    inertia.stencils_.add_vertices(std::array{vertex});
+    inertia.element_mass_.push_back(mass[vertex]);
+  }
+  return inertia;
+}
+
+Inertia Inertia::consistent(std::string name, const std::vector<RestTriangle>& triangles, double surface_density) {
+  Inertia inertia(std::move(name), 3);
+  for (const RestTriangle& triangle : triangles) {
+    inertia.stencils_.add_vertices(triangle.vertices);
+    inertia.element_mass_.push_back(surface_density * triangle.area);
+  }
+  return inertia;
+}
+
+void Inertia::set_target(double coefficient, const Vector& target) {
+  coefficient_ = coefficient;
+  target_ = target;
+}
+
+void Inertia::add_product(const Vector& v, Vector& out) const {
+  for (Index element = 0; element < stencils_.count(); ++element) {
+    const int* variables = stencils_[element];
+    for (int i = 0; i < nodes_; ++i) {
+      for (int j = 0; j < nodes_; ++j) {
+        for (int axis = 0; axis < 3; ++axis)
+          out[variables[3 * i + axis]] += mass(element, i, j) * v[variables[3 * j + axis]];
+      }
+    }
+  }
+}
+
+double Inertia::kinetic_energy(const Vector& velocity) const {
+  Vector momentum = Vector::Zero(velocity.size());
+  add_product(velocity, momentum);
+  return 0.5 * velocity.dot(momentum);
+}
+
+double Inertia::evaluate(Index element, const double* x, double* gradient, double* hessian,
+                         Curvature /*curvature*/) const {
+  const int* variables = stencils_[element];
+  const int width = 3 * nodes_;
+  std::array<double, 9> offset, force;
+  for (int i = 0; i < width; ++i) offset[i] = x[i] - target_[variables[i]];
+  double value = 0;
+  for (int i = 0; i < nodes_; ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      double sum = 0;
+      for (int j = 0; j < nodes_; ++j) sum += mass(element, i, j) * offset[3 * j + axis];
+      force[3 * i + axis] = coefficient_ * sum;
+      value += 0.5 * force[3 * i + axis] * offset[3 * i + axis];
+    }
+  }
+  if (gradient) std::copy_n(force.begin(), width, gradient);
+  if (hessian) {
+    std::fill_n(hessian, width * width, 0.0);
+    for (int i = 0; i < nodes_; ++i) {
+      for (int j = 0; j < nodes_; ++j) {
+        for (int axis = 0; axis < 3; ++axis)
+          hessian[3 * i + axis + (3 * j + axis) * width] = coefficient_ * mass(element, i, j);
+      }
+    }
+  }
+  return value;
+}
+
+}  // namespace taut

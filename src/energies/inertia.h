@@ -1,0 +1,49 @@
+#pragma once
+
+#include <vector>
+
+#include "core/energy.h"
+#include "geometry/rest_shape.h"
+
+namespace taut {
+
+/// W(x) = a/2 (x - t)^T M (x - t): inertia with a = 1/h^2 about the predicted position t, or mass-proportional damping
+/// about the last one. M is lumped (one node an element) or consistent (one triangle an element); both coefficient and
+/// target change from step to step.
+class Inertia final : public Energy {
+ public:
+  /// A third of each triangle's mass on each of its vertices; `surface_density` in kg/m^2, `vertices` the number of
+  /// vertices of the whole scene.
+  static Inertia lumped(std::string name, const std::vector<RestTriangle>& triangles, double surface_density,
+                        Index vertices);
+  /// Linear triangles integrated exactly: surface_density * area / 12 * [2 1 1; 1 2 1; 1 1 2].
+  static Inertia consistent(std::string name, const std::vector<RestTriangle>& triangles, double surface_density);
+
+  /// `coefficient` a in 1/s^2 and `target` t, one entry per variable of the scene, m.
+  void set_target(double coefficient, const Vector& target);
+
+  /// Adds M v to `out` (both one entry per variable).
+  void add_product(const Vector& v, Vector& out) const;
+  double kinetic_energy(const Vector& velocity) const;
+
+  std::string name() const override { return name_; }
+  const Stencils& stencils() const override { return stencils_; }
+  double evaluate(Index element, const double* x, double* gradient, double* hessian,
+                  Curvature curvature) const override;
+
+ private:
+  Inertia(std::string name, int nodes) : name_(std::move(name)), nodes_(nodes), stencils_(3 * nodes) {}
+  /// Entry (i, j) of the element's node mass matrix, kg.
+  double mass(Index element, int i, int j) const {
+    return element_mass_[element] * (nodes_ == 1 ? 1.0 : (i == j ? 2.0 : 1.0) / 12.0);
+  }
+
+  std::string name_;
+  int nodes_;
+  Stencils stencils_;
+  std::vector<double> element_mass_;  // kg
+  double coefficient_ = 0;
+  Vector target_;
+};
+
+}  // namespace taut

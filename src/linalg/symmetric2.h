@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cmath>
+
+#include "core/types.h"
+
+namespace taut {
+
+/// Eigenpairs of a symmetric 2x2 matrix: values[0] >= values[1], vectors orthonormal columns with determinant +1.
+struct Eigen2 {
+  double values[2];
+  Matrix2 vectors;
+};
+
+/// Closed form for [a b; b c]; relative accuracy of the larger value in magnitude is about 1e-16, coincident values are
+/// fine.
+inline Eigen2 eigen2(double a, double b, double c) {
+  const double mean = 0.5 * (a + c), half = 0.5 * (a - c), radius = std::hypot(half, b);
+  Eigen2 pair;
+  pair.values[0] = mean + radius;
+  pair.values[1] = mean - radius;
+  // The first eigenvector is (radius + half, b) or (b, radius - half): the one without cancellation.
+  double x = 1, y = 0;
+  if (radius > 0) {
+    if (half >= 0) {
+      x = radius + half;
+      y = b;
+    } else {
+      x = std::abs(b);
+      y = std::copysign(radius - half, b);
+    }
+    const double norm = std::hypot(x, y);
+    x /= norm;
+    y /= norm;
+  }
+  pair.vectors << x, -y, y, x;
+  return pair;
+}
+
+}  // namespace taut

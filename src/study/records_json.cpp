@@ -1,0 +1,235 @@
+#include "study/records_json.h"
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace taut {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr int format_version = 1;
+
+double number(const Json& json) {
+  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+}
+
+std::string text_of(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace); }
+
+Json counts_json(const Counts& counts) {
+  return {{"outer", counts.outer},
+          {"linear_solves", counts.linear_solves},
+          {"factorizations", counts.factorizations},
+          {"function_evaluations", counts.function_evaluations}};
+}
+
+Json timings_json(const Timings& timings) {
+  return {{"assembly", timings.assembly},
+          {"analysis", timings.analysis},
+          {"factorization", timings.factorization},
+          {"solve", timings.solve}};
+}
+
+Json numbers_json(const NamedNumbers& numbers) {
+  Json json = Json::object();
+  for (const auto& [name, value] : numbers) json[name] = value;
+  return json;
+}
+
+Json violations_json(const StepRecord& record) {
+  Json json = Json::object();
+  for (const Violation& violation : record.residuals.violations) {
+    json[violation.constraint] = {{"max", violation.max}, {"where", violation.where}};
+  }
+  for (const Penetration& penetration : record.penetrations) {
+    json[penetration.constraint]["edge_penetration"] = penetration.edge;
+    json[penetration.constraint]["face_penetration"] = penetration.face;
+  }
+  return json;
+}
+
+Json violations_json(const RunSummary& summary) {
+  Json json = Json::object();
+  for (const WorstViolation& worst : summary.violations) {
+    Json& violation = json[worst.constraint];
+    violation = {{"max", worst.max}, {"where", worst.where}, {"step", worst.step}};
+    if (!worst.penetration) continue;
+    violation["edge_penetration"] = worst.penetration->edge;
+    violation["face_penetration"] = worst.penetration->face;
+  }
+  return json;
+}
+
+Json residuals_json(const RunSummary& s) {
+  return {{"stationarity", s.stationarity.scaled},
+          {"stationarity_unscaled", s.stationarity.unscaled},
+          {"force_scale", s.force_scale},
+          {"stationarity_step", s.stationarity.step},
+          {"worst_node", s.worst_node},
+          {"feasibility", s.feasibility.scaled},
+          {"feasibility_unscaled", s.feasibility.unscaled},
+          {"feasibility_step", s.feasibility.step},
+          {"complementarity", s.complementarity.scaled},
+          {"complementarity_unscaled", s.complementarity.unscaled},
+          {"complementarity_step", s.complementarity.step}};
+}
+
+void read_residuals(const Json& json, RunSummary& s) {
+  const auto read = [&json](const std::string& name) {
+    return Worst{number(json.at(name)), number(json.at(name + "_unscaled")), json.at(name + "_step").get<int>()};
+  };
+  s.stationarity = read("stationarity");
+  s.feasibility = read("feasibility");
+  s.complementarity = read("complementarity");
+  s.force_scale = number(json.at("force_scale"));
+  s.worst_node = json.at("worst_node");
+}
+
+void read_violations(const Json& json, RunSummary& s) {
+  for (const auto& [constraint, violation] : json.items()) {
+    WorstViolation worst{constraint, number(violation.at("max")), violation.at("where"), violation.at("step"), {}};
+    if (violation.contains("edge_penetration")) {
+      worst.penetration =
+          Penetration{constraint, number(violation.at("edge_penetration")), number(violation.at("face_penetration"))};
+    }
+    s.violations.push_back(worst);
+  }
+}
+
+void read_counts(const Json& json, Counts& counts) {
+  counts = {json.at("outer"),
+            json.at("linear_solves"),
+            json.at("factorizations"),
+            json.at("symbolic_analyses"),
+            json.at("matrix_allocations"),
+            json.at("function_evaluations")};
+}
+
+Json seconds_json(const RunSeconds& seconds) {
+  Json json = {{"total", seconds.total}, {"solver", seconds.solver.total}};
+  json.update(timings_json(seconds.solver));
+  json["judging"] = seconds.judging;
+  json["output"] = seconds.output;
+  return json;
+}
+
+void read_seconds(const Json& json, RunSeconds& seconds) {
+  seconds.total = number(json.at("total"));
+  seconds.solver = {number(json.at("solver")), number(json.at("assembly")), number(json.at("analysis")),
+                    number(json.at("factorization")), number(json.at("solve"))};
+  seconds.judging = number(json.at("judging"));
+  seconds.output = number(json.at("output"));
+}
+
+Json worst_elements_json(const RunSummary& summary) {
+  Json json = Json::array();
+  for (const WorstElement& worst : summary.worst_elements) {
+    json.push_back({{"constraint", worst.constraint}, {"element", worst.element}, {"violation", worst.violation}});
+  }
+  return json;
+}
+
+Json unfinished_json(const std::optional<UnfinishedStep>& unfinished) {
+  if (!unfinished) return nullptr;
+  return {{"step", unfinished->step},
+          {"message", unfinished->message},
+          {"stationarity", unfinished->stationarity},
+          {"feasibility", unfinished->feasibility},
+          {"complementarity", unfinished->complementarity}};
+}
+
+RunSummary summary_of(const Json& json) {
+  if (json.at("format") != format_version) throw std::runtime_error("summary.json is of another version");
+  RunSummary s;
+  s.input_hash = json.at("input_hash");
+  s.problem = json.at("problem");
+  s.solver = json.at("solver");
+  s.status = status_from_string(json.at("status").get<std::string>());
+  s.message = json.at("message");
+  s.steps_done = json.at("steps").at("done");
+  s.steps_solved = json.at("steps").at("solved");
+  s.steps_asked = json.at("steps").at("asked");
+  s.objective = number(json.at("objective"));
+  read_residuals(json.at("residuals"), s);
+  read_violations(json.at("violations"), s);
+  s.worst_elements_step = json.at("worst_elements_step");
+  for (const Json& worst : json.at("worst_elements")) {
+    s.worst_elements.push_back({worst.at("constraint"), worst.at("element"), number(worst.at("violation"))});
+  }
+  if (const Json& u = json.at("unfinished_step"); !u.is_null()) {
+    s.unfinished = UnfinishedStep{u.at("step"), u.at("message"), number(u.at("stationarity")),
+                                  number(u.at("feasibility")), number(u.at("complementarity"))};
+  }
+  read_counts(json.at("counts"), s.counts);
+  read_seconds(json.at("seconds"), s.seconds);
+  s.peak_memory_bytes = json.at("peak_memory_bytes");
+  s.version = json.at("version");
+  const Json& machine = json.at("machine");
+  s.machine = {machine.at("cpu"), machine.at("os"), machine.at("cores").get<int>()};
+  s.threads = machine.at("threads");
+  s.notes = json.at("notes").get<std::vector<std::string>>();
+  s.files = json.at("files").get<std::vector<std::string>>();
+  return s;
+}
+
+}  // namespace
+
+std::string summary_text(const RunSummary& s) {
+  Json json;
+  json["format"] = format_version;
+  json["input_hash"] = s.input_hash;
+  json["problem"] = s.problem;
+  json["solver"] = s.solver;
+  json["status"] = to_string(s.status);
+  json["message"] = s.message;
+  json["steps"] = {{"done", s.steps_done}, {"solved", s.steps_solved}, {"asked", s.steps_asked}};
+  json["objective"] = s.objective;
+  json["residuals"] = residuals_json(s);
+  json["violations"] = violations_json(s);
+  json["worst_elements_step"] = s.worst_elements_step;
+  json["worst_elements"] = worst_elements_json(s);
+  json["unfinished_step"] = unfinished_json(s.unfinished);
+  json["counts"] = counts_json(s.counts);
+  json["counts"]["symbolic_analyses"] = s.counts.symbolic_analyses;
+  json["counts"]["matrix_allocations"] = s.counts.matrix_allocations;
+  json["seconds"] = seconds_json(s.seconds);
+  json["peak_memory_bytes"] = s.peak_memory_bytes;
+  json["version"] = s.version;
+  json["machine"] = {{"cpu", s.machine.cpu}, {"cores", s.machine.cores}, {"threads", s.threads}, {"os", s.machine.os}};
+  json["notes"] = s.notes;
+  json["files"] = s.files;
+  return text_of(json) + "\n";
+}
+
+RunSummary parse_summary(std::string_view text) {
+  try {
+    return summary_of(Json::parse(text));
+  } catch (const std::exception& error) {
+    throw std::runtime_error(std::string("not a summary of Taut: ") + error.what());
+  }
+}
+
+std::string step_line(const StepRecord& record) {
+  const Residuals& r = record.residuals;
+  Json json;
+  json["step"] = record.step;
+  json["time"] = record.time;
+  json["status"] = to_string(record.status);
+  json["message"] = record.message;
+  json["residuals"] = {
+      {"stationarity", r.stationarity},       {"stationarity_unscaled", r.stationarity_unscaled},
+      {"force_scale", r.force_scale},         {"worst_node", r.worst_node},
+      {"feasibility", r.feasibility},         {"feasibility_unscaled", r.feasibility_unscaled},
+      {"complementarity", r.complementarity}, {"complementarity_unscaled", r.complementarity_unscaled}};
+  json["violations"] = violations_json(record);
+  json["objective"] = record.objective;
+  json["energies"] = numbers_json(record.energies);
+  json["penalties"] = numbers_json(record.penalties);
+  json["counts"] = counts_json(record.counts);
+  json["seconds"] = {{"total", record.seconds.total}};
+  json["seconds"].update(timings_json(record.seconds));
+  json["seconds"]["judging"] = record.judging;
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace taut

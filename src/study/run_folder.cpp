@@ -1,0 +1,169 @@
+#include "study/run_folder.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "files/atomic_file.h"
+#include "files/checkpoint.h"
+#include "study/frame_output.h"
+#include "study/records_json.h"
+
+namespace taut {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* checkpoint_file = "checkpoint.bin";
+constexpr const char* summary_file = "summary.json";
+constexpr const char* steps_file = "steps.jsonl";
+constexpr const char* problem_file = "problem.json";
+
+using Arrays = std::map<std::string, std::vector<double>>;
+
+std::vector<double> array(const Vector& vector) { return {vector.begin(), vector.end()}; }
+Vector vector(const std::vector<double>& array) {
+  return Eigen::Map<const Vector>(array.data(), static_cast<Index>(array.size()));
+}
+
+Arrays to_arrays(const State& state) {
+  // A structured binding, so that a member that State gains cannot be forgotten here.
+  const auto& [step, positions, velocities, accelerations, previous_positions, previous_velocities,
+               auxiliary_accelerations, warm] = state;
+  Arrays arrays{{"positions", array(positions)},
+                {"velocities", array(velocities)},
+                {"accelerations", array(accelerations)},
+                {"previous_positions", array(previous_positions)},
+                {"previous_velocities", array(previous_velocities)},
+                {"auxiliary_accelerations", array(auxiliary_accelerations)},
+                {"penalties", warm.penalties}};
+  for (std::size_t k = 0; k < warm.multipliers.size(); ++k) {
+    arrays["multipliers " + std::to_string(k)] = array(warm.multipliers[k]);
+  }
+  return arrays;
+}
+
+State to_state(int step, const Arrays& arrays) {
+  const auto read = [&arrays](const char* name) { return vector(arrays.at(name)); };
+  State state{step,
+              read("positions"),
+              read("velocities"),
+              read("accelerations"),
+              read("previous_positions"),
+              read("previous_velocities"),
+              read("auxiliary_accelerations"),
+              {{}, arrays.at("penalties")}};
+  for (std::size_t k = 0;; ++k) {
+    const auto found = arrays.find("multipliers " + std::to_string(k));
+    if (found == arrays.end()) return state;
+    state.warm.multipliers.push_back(vector(found->second));
+  }
+}
+
+bool is_empty_or_missing(const fs::path& folder) {
+  std::error_code error;
+  const bool empty = fs::is_empty(folder, error);
+  return error ? !fs::exists(folder, error) : empty;
+}
+
+bool holds_a_run(const fs::path& folder) {
+  try {
+    read_checkpoint(folder / checkpoint_file);
+    return true;
+  } catch (const std::exception&) {
+  }
+  try {
+    parse_summary(read_bytes(folder / summary_file));
+    return true;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+/// The completed problem under its own name, which it need not hold where that was the file's.
+std::string problem_text(const Scene& scene) {
+  nlohmann::json document = nlohmann::json::parse(scene.document);
+  document["name"] = scene.name;
+  return document.dump(2) + "\n";
+}
+
+}  // namespace
+
+RunFolder::RunFolder(fs::path path) : path_(std::move(path)) {
+  std::error_code error;
+  if (fs::exists(path_, error) && !fs::is_directory(path_, error)) {
+    throw RunRefused(path_.string() + ": is not a directory");
+  }
+  if (!is_empty_or_missing(path_) && !holds_a_run(path_)) {
+    throw RunRefused(path_.string() +
+                     ": is not empty and holds no run of taut; nothing was touched, choose another directory");
+  }
+}
+
+std::optional<Continuation> RunFolder::continuation(const Scene& scene, int threads) const try {
+  if (is_empty_or_missing(path_)) return {};
+  const Checkpoint checkpoint = read_checkpoint(file(checkpoint_file));
+  if (checkpoint.input_hash != scene.hash) {
+    throw RunRefused(path_.string() + ": belongs to another problem (its hash is " + checkpoint.input_hash +
+                     ", that of this one " + scene.hash + ")");
+  }
+  Continuation from;
+  from.finished = checkpoint.texts.at("finished") == "yes";
+  from.threads = std::stoi(checkpoint.texts.at("threads"));
+  if (threads != 0 && threads != from.threads) {
+    throw RunRefused(path_.string() + ": was run with " + std::to_string(from.threads) + " threads, not " +
+                     std::to_string(threads) + "; another number gives other bits");
+  }
+  from.state = to_state(static_cast<int>(checkpoint.step), checkpoint.arrays);
+  from.summary = parse_summary(checkpoint.texts.at("summary"));
+  return from;
+} catch (const RunRefused&) {
+  throw;
+} catch (const std::exception& error) {
+  throw RunRefused(path_.string() + ": cannot be resumed: " + error.what());
+}
+
+void RunFolder::begin(const Scene& scene, const Continuation& start) {
+  std::error_code error;
+  fs::create_directories(path_, error);
+  if (error) throw RunRefused(path_.string() + ": cannot be created: " + error.message());
+  // First the checkpoint: killed at any point after it, the folder is a run's that resumes from the beginning.
+  replace_checkpoint(scene.hash, start);
+  fs::remove(file(summary_file));
+  remove_frames_after(path_, -1);
+  steps_.emplace(file(steps_file));
+  write_atomically(file(problem_file), problem_text(scene));
+}
+
+void RunFolder::go_on(const Continuation& from) try {
+  steps_.emplace(file(steps_file), from.state.step);
+  fs::remove(file(summary_file));
+} catch (const FileError& error) {
+  throw RunRefused(std::string(error.what()) + "; cannot be resumed");
+}
+
+void RunFolder::append_step(const StepRecord& record) { steps_->append(step_line(record)); }
+
+void RunFolder::write_checkpoint(const std::string& input_hash, const Continuation& now) {
+  steps_->sync();
+  replace_checkpoint(input_hash, now);
+}
+
+void RunFolder::replace_checkpoint(const std::string& input_hash, const Continuation& now) const {
+  Checkpoint checkpoint{input_hash, now.state.step, to_arrays(now.state), {}};
+  checkpoint.texts["finished"] = now.finished ? "yes" : "no";
+  checkpoint.texts["threads"] = std::to_string(now.threads);
+  checkpoint.texts["summary"] = summary_text(now.summary);
+  taut::write_checkpoint(file(checkpoint_file), checkpoint);
+}
+
+void RunFolder::write_summary(RunSummary& summary) const {
+  summary.files = {checkpoint_file, problem_file, steps_file, summary_file};
+  for (const auto& entry : fs::recursive_directory_iterator(path_)) {
+    const std::string extension = entry.path().extension().string();
+    const bool ours = extension == ".vtu" || extension == ".obj" || extension == ".svg" || extension == ".pvd";
+    if (ours && entry.is_regular_file()) summary.files.push_back(fs::relative(entry.path(), path_).string());
+  }
+  std::sort(summary.files.begin(), summary.files.end());
+  write_atomically(file(summary_file), summary_text(summary));
+}
+
+}  // namespace taut

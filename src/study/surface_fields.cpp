@@ -1,0 +1,99 @@
+#include "study/surface_fields.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "constraints/strain_limit.h"
+#include "energies/membrane.h"
+#include "linalg/svd3x2.h"
+#include "linalg/symmetric2.h"
+
+namespace taut {
+namespace {
+
+const StrainLimitTriangles* strain_limit(const Constraint& constraint) {
+  if (const auto* matrix = dynamic_cast<const MatrixStrainLimit*>(&constraint)) return &matrix->limit();
+  if (const auto* values = dynamic_cast<const SingularValueStrainLimit*>(&constraint)) return &values->limit();
+  return nullptr;
+}
+
+double tension_of(const double* multipliers, bool matrix) {
+  if (!matrix) return std::max(multipliers[0], multipliers[1]);
+  return 2 * eigen2(multipliers[0], multipliers[1] / std::numbers::sqrt2, multipliers[2]).values[0];
+}
+
+}  // namespace
+
+SurfaceFields::SurfaceFields(const Model& model) : model_(model), rest_(model.triangles.size(), nullptr) {
+  std::map<Triangle, int> numbers;
+  for (std::size_t i = 0; i < model.triangles.size(); ++i) numbers.emplace(model.triangles[i], static_cast<int>(i));
+  const auto take_rest = [&](const std::vector<RestTriangle>& triangles) {
+    std::vector<int> found;
+    for (const RestTriangle& triangle : triangles) {
+      found.push_back(numbers.at(triangle.vertices));
+      rest_[static_cast<std::size_t>(found.back())] = &triangle;
+    }
+    return found;
+  };
+  for (const auto& energy : model.elastic) {
+    if (const auto* membrane = dynamic_cast<const Membrane*>(energy.get())) take_rest(membrane->triangles());
+  }
+  for (std::size_t k = 0; k < model.constraints.size(); ++k) {
+    const StrainLimitTriangles* limit = strain_limit(*model.constraints[k]);
+    if (!limit) continue;
+    limits_.push_back({k, model.constraints[k]->rows() == 3, take_rest(limit->triangles)});
+    if (std::isfinite(limit->max)) upper_limit_ = std::min(limit->max, upper_limit_.value_or(limit->max));
+  }
+}
+
+std::vector<Vector2> SurfaceFields::stretches(const Vector& positions) const {
+  std::vector<Vector2> values(rest_.size(), Vector2::Constant(std::numeric_limits<double>::quiet_NaN()));
+  for (std::size_t i = 0; i < rest_.size(); ++i) {
+    if (!rest_[i]) continue;
+    Matrix3 corners;
+    for (int j = 0; j < 3; ++j) corners.col(j) = positions.segment<3>(3 * rest_[i]->vertices[j]);
+    values[i] = singular_values(rest_[i]->deformation_gradient(corners.data()));
+  }
+  return values;
+}
+
+std::vector<double> SurfaceFields::largest_stretch(const Vector& positions) const {
+  std::vector<double> largest;
+  for (const Vector2& value : stretches(positions)) largest.push_back(value[0]);
+  return largest;
+}
+
+Frame SurfaceFields::frame(const State& state, double time) const {
+  const std::size_t cells = model_.triangles.size();
+  Field velocity{"velocity", 3, {state.velocities.begin(), state.velocities.end()}}, body{"body", 1, {}};
+  for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
+    body.values.insert(body.values.end(), static_cast<std::size_t>(model_.bodies[i].vertices), static_cast<double>(i));
+  }
+  Field sigma_max{"sigma_max", 1, {}}, sigma_min{"sigma_min", 1, {}};
+  for (const Vector2& value : stretches(state.positions)) {
+    sigma_max.values.push_back(value[0]);
+    sigma_min.values.push_back(value[1]);
+  }
+  Field tension{"tension", 1, std::vector<double>(cells, 0)}, active{"active", 1, std::vector<double>(cells, 0)};
+  std::vector<char> seen(cells, 0);
+  for (const Limit& limit : limits_) {
+    if (limit.constraint >= state.warm.multipliers.size()) continue;  // before the first step
+    const Vector& multipliers = state.warm.multipliers[limit.constraint];
+    const int rows = limit.matrix ? 3 : 2;
+    for (std::size_t e = 0; e < limit.triangles.size(); ++e) {
+      const auto triangle = static_cast<std::size_t>(limit.triangles[e]);
+      const auto row = static_cast<Index>(e) * rows;
+      const double value = tension_of(multipliers.data() + row, limit.matrix);
+      const bool first = !std::exchange(seen[triangle], 1);
+      tension.values[triangle] = first ? value : std::max(tension.values[triangle], value);
+      if (!multipliers.segment(row, rows).isZero(0)) active.values[triangle] = 1;
+    }
+  }
+  return {time, state.positions, model_.triangles, {velocity, body}, {sigma_max, sigma_min, tension, active}};
+}
+
+}  // namespace taut

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/constraint.h"
+#include "dynamics/model.h"
+#include "dynamics/stepper.h"
+#include "files/vtu.h"
+#include "geometry/rest_shape.h"
+
+namespace taut {
+
+/// What a frame shows of a state. At points: velocity (m/s) and body (its number). In cells, from the membranes and
+/// strain limits of the model: sigma_max and sigma_min (singular values; NaN where no rest shape is known), tension
+/// (N/m) and active (1 where a multiplier of a strain limit is not zero).
+///
+/// The tension is the largest eigenvalue of 2 Lambda for limits of matrix form, the largest multiplier for those of
+/// singular values; 0 without a limit.
+class SurfaceFields {
+ public:
+  /// The model is borrowed.
+  explicit SurfaceFields(const Model& model);
+
+  Frame frame(const State& state, double time) const;
+  /// The largest singular value of each triangle at these positions.
+  std::vector<double> largest_stretch(const Vector& positions) const;
+  /// The smallest upper limit of any strain limit, if there is one.
+  std::optional<double> upper_limit() const { return upper_limit_; }
+
+ private:
+  struct Limit {
+    std::size_t constraint;      // its place in Model::constraints
+    bool matrix;                 // its form
+    std::vector<int> triangles;  // of each element
+  };
+  std::vector<Vector2> stretches(const Vector& positions) const;
+
+  const Model& model_;
+  std::vector<const RestTriangle*> rest_;  // of each triangle of the model, or null
+  std::vector<Limit> limits_;
+  std::optional<double> upper_limit_;
+};
+
+}  // namespace taut

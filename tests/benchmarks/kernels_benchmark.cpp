@@ -1,0 +1,238 @@
+// What one element, one assembly and one factorisation cost. The counter `per_element` is seconds (n: nanoseconds) per
+// element or triangle. Cloth is crumpled by a tenth of a cell, so that about half of the triangles are beyond a limit.
+
+#include <benchmark/benchmark.h>
+
+#include <Eigen/SVD>
+#include <array>
+#include <deque>
+#include <stdexcept>
+#include <vector>
+
+#include "benchmarks/scene_h.h"
+#include "core/assembly.h"
+#include "dynamics/stepper.h"
+#include "energies/hinge_bending.h"
+#include "energies/membrane.h"
+#include "linalg/cholesky.h"
+#include "linalg/svd3x2.h"
+#include "problems/build.h"
+#include "solvers/eliminated_slack.h"
+
+namespace taut::benchmarks {
+namespace {
+
+using Linearisation = EliminatedSlack::Linearisation;
+
+constexpr int kernel_cells = 16;
+constexpr Limit limit{0.9, 1.1};
+
+/// A first time step of scene H with the constraints' slacks as energies, as the solver sees it.
+struct PosedStep {
+  explicit PosedStep(int cells, const std::string& membrane_law = "stvk")
+      : scene(scene_h(cells, limit, membrane_law)),
+        model(build_model(scene)),
+        stepper(*model, time_options(scene)),
+        problem(stepper.prepare()),
+        x(crumpled(*model, cells)) {
+    for (const Constraint* constraint : problem.constraints) {
+      slacks.emplace_back(*constraint);
+      slacks.back().set_penalty(1.0);
+      slacks.back().set_epsilon(1e-8);
+    }
+  }
+  std::vector<const Energy*> energies() const {
+    std::vector<const Energy*> all = problem.energies;
+    for (const EliminatedSlack& slack : slacks) all.push_back(&slack);
+    return all;
+  }
+  template <class Wanted>
+  const Wanted& energy() const {
+    for (const auto& elastic : model->elastic) {
+      if (const auto* found = dynamic_cast<const Wanted*>(elastic.get())) return *found;
+    }
+    throw std::logic_error("scene H has no such energy");
+  }
+  double triangles() const { return static_cast<double>(model->triangles.size()); }
+
+  Scene scene;
+  std::unique_ptr<Model> model;
+  Stepper stepper;
+  const Problem& problem;
+  Vector x;
+  std::deque<EliminatedSlack> slacks;
+};
+
+void count_elements(benchmark::State& state, double elements) {
+  state.counters["per_element"] =
+      benchmark::Counter(elements, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+enum class Wanted { value, gradient, hessian, exact_hessian };
+
+void evaluate_all(benchmark::State& state, const Energy& energy, const Vector& x, Wanted wanted) {
+  const Stencils& stencils = energy.stencils();
+  const int width = stencils.width();
+  std::vector<double> locals(stencils.count() * width);
+  for (Index e = 0; e < stencils.count(); ++e) stencils.gather(e, x, locals.data() + e * width);
+  std::array<double, max_stencil_width> gradient;
+  std::array<double, max_stencil_width * max_stencil_width> hessian;
+  double* const to_gradient = wanted == Wanted::value ? nullptr : gradient.data();
+  double* const to_hessian = wanted <= Wanted::gradient ? nullptr : hessian.data();
+  const Curvature curvature = wanted == Wanted::exact_hessian ? Curvature::exact : Curvature::positive_semidefinite;
+  for (auto _ : state) {
+    for (Index e = 0; e < stencils.count(); ++e) {
+      benchmark::DoNotOptimize(energy.evaluate(e, locals.data() + e * width, to_gradient, to_hessian, curvature));
+      benchmark::ClobberMemory();
+    }
+  }
+  count_elements(state, static_cast<double>(stencils.count()));
+}
+
+void membrane(benchmark::State& state, const char* law, Wanted wanted) {
+  const PosedStep step(kernel_cells, law);
+  evaluate_all(state, step.energy<Membrane>(), step.x, wanted);
+}
+BENCHMARK_CAPTURE(membrane, stvk_gradient, "stvk", Wanted::gradient);
+BENCHMARK_CAPTURE(membrane, stvk_hessian, "stvk", Wanted::hessian);
+BENCHMARK_CAPTURE(membrane, neo_hookean_gradient, "neo_hookean", Wanted::gradient);
+BENCHMARK_CAPTURE(membrane, neo_hookean_hessian, "neo_hookean", Wanted::hessian);
+
+void hinge(benchmark::State& state, Wanted wanted) {
+  const PosedStep step(kernel_cells);
+  evaluate_all(state, step.energy<HingeBending>(), step.x, wanted);
+}
+BENCHMARK_CAPTURE(hinge, gradient, Wanted::gradient);
+BENCHMARK_CAPTURE(hinge, hessian, Wanted::hessian);
+BENCHMARK_CAPTURE(hinge, exact_hessian, Wanted::exact_hessian);
+
+void strain_limit(benchmark::State& state, Linearisation linearisation, Wanted wanted) {
+  PosedStep step(kernel_cells);
+  step.slacks.front().set_linearisation(linearisation);
+  evaluate_all(state, step.slacks.front(), step.x, wanted);
+}
+BENCHMARK_CAPTURE(strain_limit, multipliers_gradient, Linearisation::augmented_lagrangian, Wanted::gradient);
+BENCHMARK_CAPTURE(strain_limit, multipliers_hessian, Linearisation::augmented_lagrangian, Wanted::hessian);
+BENCHMARK_CAPTURE(strain_limit, path_hessian, Linearisation::primal_dual, Wanted::hessian);
+BENCHMARK_CAPTURE(strain_limit, path_held_gradient, Linearisation::held, Wanted::gradient);
+
+void strain_limit_path_mismatch(benchmark::State& state) {
+  const PosedStep step(kernel_cells);
+  for (auto _ : state) benchmark::DoNotOptimize(step.slacks.front().mismatch(step.x).max);
+  count_elements(state, step.triangles());
+}
+BENCHMARK(strain_limit_path_mismatch);
+
+void strain_limit_path_multiplier_step(benchmark::State& state) {
+  const PosedStep step(kernel_cells);
+  const Vector dx = step.x - step.model->positions;
+  Vector change;
+  for (auto _ : state) {
+    step.slacks.front().multiplier_step(step.x, dx, change);
+    benchmark::DoNotOptimize(change.data());
+  }
+  count_elements(state, step.triangles());
+}
+BENCHMARK(strain_limit_path_multiplier_step);
+
+std::vector<Matrix32> deformation_gradients() {
+  const PosedStep step(kernel_cells);
+  const Membrane& energy = step.energy<Membrane>();
+  std::vector<Matrix32> all;
+  std::array<double, 9> local;
+  for (std::size_t e = 0; e < energy.triangles().size(); ++e) {
+    energy.stencils().gather(static_cast<Index>(e), step.x, local.data());
+    all.push_back(energy.triangles()[e].deformation_gradient(local.data()));
+  }
+  return all;
+}
+
+void svd_closed_form(benchmark::State& state) {
+  const std::vector<Matrix32> all = deformation_gradients();
+  for (auto _ : state) {
+    for (const Matrix32& f : all) benchmark::DoNotOptimize(svd(f));
+  }
+  count_elements(state, static_cast<double>(all.size()));
+}
+BENCHMARK(svd_closed_form);
+
+void svd_eigen_jacobi(benchmark::State& state) {
+  const std::vector<Matrix32> all = deformation_gradients();
+  for (auto _ : state) {
+    for (const Matrix32& f : all) {
+      const Eigen::JacobiSVD<Matrix32> decomposition(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
+      benchmark::DoNotOptimize(decomposition.singularValues().data());
+      benchmark::ClobberMemory();
+    }
+  }
+  count_elements(state, static_cast<double>(all.size()));
+}
+BENCHMARK(svd_eigen_jacobi);
+
+/// In the order that the factorisation wants, as in a solve.
+Assembly assembly_of(const PosedStep& step, int threads) {
+  Assembly assembly(step.problem.size(), step.energies(), step.problem.fixed_variables, threads);
+  assembly.set_order(fill_reducing_order(assembly.graph()));
+  return assembly;
+}
+
+void assembly_gradient(benchmark::State& state) {
+  const PosedStep step(static_cast<int>(state.range(0)));
+  const Assembly assembly = assembly_of(step, static_cast<int>(state.range(1)));
+  Vector gradient;
+  for (auto _ : state) benchmark::DoNotOptimize(assembly.gradient(step.x, gradient));
+  count_elements(state, step.triangles());
+}
+BENCHMARK(assembly_gradient)->ArgNames({"cells", "threads"})->ArgsProduct({{64, 128}, {1, 2}})->UseRealTime();
+
+void assembly_hessian(benchmark::State& state, Linearisation linearisation) {
+  PosedStep step(static_cast<int>(state.range(0)));
+  for (EliminatedSlack& slack : step.slacks) slack.set_linearisation(linearisation);
+  Assembly assembly = assembly_of(step, static_cast<int>(state.range(1)));
+  Vector gradient;
+  for (auto _ : state) {
+    assembly.hessian(step.x, Curvature::positive_semidefinite, &gradient);
+    benchmark::ClobberMemory();
+  }
+  count_elements(state, step.triangles());
+}
+BENCHMARK_CAPTURE(assembly_hessian, multipliers, Linearisation::augmented_lagrangian)
+    ->ArgNames({"cells", "threads"})
+    ->ArgsProduct({{64, 128}, {1, 2}})
+    ->UseRealTime();
+BENCHMARK_CAPTURE(assembly_hessian, path, Linearisation::primal_dual)
+    ->ArgNames({"cells", "threads"})
+    ->ArgsProduct({{64, 128}, {1, 2}})
+    ->UseRealTime();
+
+/// Numeric factorisation and one pair of triangular solves: what no Newton iteration can do without.
+void factorize_and_solve(benchmark::State& state) {
+  const PosedStep step(static_cast<int>(state.range(0)));
+  Assembly assembly = assembly_of(step, 1);
+  Vector gradient, right_hand_side, solution;
+  assembly.hessian(step.x, Curvature::positive_semidefinite, &gradient);
+  assembly.to_ordered(gradient, right_hand_side);
+  Cholesky cholesky(assembly.matrix(), 1);
+  for (auto _ : state) {
+    if (!cholesky.factorize(assembly.matrix())) {
+      state.SkipWithError("the matrix is not positive definite");
+      break;
+    }
+    cholesky.solve(right_hand_side, solution);
+    benchmark::DoNotOptimize(solution.data());
+  }
+  count_elements(state, step.triangles());
+  state.counters["factor_nonzeros"] = cholesky.factor_nonzeros();
+  state.counters["gigaflops"] =
+      benchmark::Counter(cholesky.factor_flops() * 1e-9, benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(factorize_and_solve)
+    ->ArgName("cells")
+    ->Arg(32)
+    ->Arg(64)
+    ->Arg(128)
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace taut::benchmarks

@@ -1,0 +1,154 @@
+#include "support/specimens.h"
+
+#include <ostream>
+#include <stdexcept>
+
+#include "constraints/obstacle.h"
+#include "constraints/strain_limit.h"
+#include "energies/dead_load.h"
+#include "energies/hinge_bending.h"
+#include "energies/inertia.h"
+#include "energies/membrane.h"
+#include "energies/pressure.h"
+#include "energies/stiffness_damping.h"
+#include "support/meshes.h"
+#include "support/random_values.h"
+
+namespace taut {
+namespace {
+
+std::vector<RestTriangle> sheet_triangles() {
+  const TriangleMesh mesh = specimen_sheet();
+  return rest_triangles(mesh.triangles, mesh.vertices);
+}
+
+std::shared_ptr<const Energy> make_inertia(Inertia inertia) {
+  inertia.set_target(50.0, RandomValues(11).vector(3 * static_cast<Index>(specimen_sheet().vertices.size())));
+  return std::make_shared<Inertia>(std::move(inertia));
+}
+
+std::shared_ptr<const Energy> make_membrane(MembraneLaw law) {
+  return std::make_shared<Membrane>("membrane", sheet_triangles(), law, Lame::plane_stress(700.0, 0.3), 0.5);
+}
+
+std::shared_ptr<const Energy> make_bending(const std::vector<Vector3>& rest) {
+  return std::make_shared<HingeBending>("bending", make_hinges(specimen_sheet().triangles, rest, 2.0, false));
+}
+
+std::shared_ptr<const Energy> make_damping() {
+  struct Damped {
+    std::shared_ptr<const Energy> membrane = make_membrane(MembraneLaw::stvk);
+    StiffnessDamping damping{"damping", *membrane};
+  };
+  const auto damped = std::make_shared<Damped>();
+  damped->damping.set_reference(0.7, posed(Pose::stretched));
+  return {damped, &damped->damping};
+}
+
+std::vector<int> sheet_vertices() {
+  std::vector<int> vertices(specimen_sheet().vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i] = static_cast<int>(i);
+  return vertices;
+}
+
+std::shared_ptr<const Constraint> make_half_space() {
+  auto half_space = std::make_shared<HalfSpace>("floor", "cloth", sheet_vertices(), 0, 1.0);
+  half_space->place({0, 0, 4}, {0.3, -0.2, 1});
+  return half_space;
+}
+
+std::shared_ptr<const Constraint> make_sphere() {
+  auto sphere = std::make_shared<SphereObstacle>("ball", "cloth", sheet_vertices(), 0, 1.0, 9.0);
+  sphere->place({1.1, 0.9, -1.5});
+  return sphere;
+}
+
+}  // namespace
+
+std::string to_string(Pose pose) {
+  switch (pose) {
+    case Pose::crumpled:
+      return "crumpled";
+    case Pose::stretched:
+      return "stretched";
+    case Pose::bent:
+      return "bent";
+    case Pose::uniform:
+      return "uniform";
+    case Pose::nearly_uniform:
+      return "nearly_uniform";
+  }
+  throw std::invalid_argument("to_string: not a Pose");
+}
+
+std::vector<Pose> all_poses() {
+  return {Pose::crumpled, Pose::stretched, Pose::bent, Pose::uniform, Pose::nearly_uniform};
+}
+
+TriangleMesh specimen_sheet() {
+  TriangleMesh mesh = make_grid(2, 2, 2, 2, Diagonals::alternating);
+  RandomValues random(3);
+  for (Vector3& vertex : mesh.vertices) vertex += 0.1 * Vector3(random.value(), random.value(), 0);
+  return mesh;
+}
+
+Vector posed(Pose pose) {
+  RandomValues random(5);
+  const Matrix3 turn = random.rotation();
+  const auto noise = [&] { return Vector3(0.02 * random.vector(3)); };
+  return flatten(mapped(specimen_sheet().vertices, [&](const Vector3& rest) -> Vector3 {
+    switch (pose) {
+      case Pose::crumpled:
+        return rest + noise();
+      case Pose::stretched:
+        return turn * Vector3(1.3 * rest.x(), 0.75 * rest.y(), 0) + noise();
+      case Pose::bent:
+        return turn * rolled(rest, 0.9) + noise();
+      case Pose::uniform:
+        return 1.2 * rest;
+      case Pose::nearly_uniform:
+        return {1.2 * rest.x(), (1.2 + 1e-6) * rest.y(), 0};
+    }
+    throw std::invalid_argument("posed: not a Pose");
+  }));
+}
+
+std::vector<EnergySpecimen> energy_specimens() {
+  const TriangleMesh mesh = specimen_sheet();
+  const Index vertices = static_cast<Index>(mesh.vertices.size());
+  const std::vector<Vector3> curved = mapped(mesh.vertices, [](const Vector3& v) { return rolled(v, -0.4); });
+  using Form = SemidefiniteForm;
+  return {
+      {"inertia_lumped", Form::projection,
+       [=] { return make_inertia(Inertia::lumped("inertia", sheet_triangles(), 0.3, vertices)); }},
+      {"inertia_consistent", Form::projection,
+       [] { return make_inertia(Inertia::consistent("inertia", sheet_triangles(), 0.3)); }},
+      {"dead_load", Form::projection,
+       [=] { return std::make_shared<DeadLoad>("load", RandomValues(7).vector(3 * vertices)); }},
+      {"membrane_stvk", Form::projection, [] { return make_membrane(MembraneLaw::stvk); }},
+      {"membrane_neo_hookean", Form::projection, [] { return make_membrane(MembraneLaw::neo_hookean); }},
+      {"bending_flat_rest", Form::other, [=] { return make_bending(mesh.vertices); }},
+      {"bending_curved_rest", Form::other, [=] { return make_bending(curved); }},
+      {"pressure", Form::other, [=] { return std::make_shared<Pressure>("pressure", mesh.triangles, 3.0); }},
+      {"stiffness_damping", Form::projection, make_damping},
+  };
+}
+
+std::vector<ConstraintSpecimen> constraint_specimens() {
+  return {
+      {"matrix_strain_limit",
+       [] { return std::make_shared<MatrixStrainLimit>(limit_on(sheet_triangles(), 0.85, 1.12)); }},
+      {"matrix_upper_limit", [] { return std::make_shared<MatrixStrainLimit>(limit_on(sheet_triangles(), 0, 1.12)); }},
+      {"singular_value_strain_limit",
+       [] { return std::make_shared<SingularValueStrainLimit>(limit_on(sheet_triangles(), 0.85, 1.12)); },
+       // Where singular values meet they have corners; at 1e-6 from there the remainders are those of the corner.
+       {Pose::crumpled, Pose::bent, Pose::uniform, Pose::nearly_uniform}},
+      {"half_space", make_half_space},
+      {"sphere_obstacle", make_sphere},
+  };
+}
+
+void PrintTo(const EnergySpecimen& specimen, std::ostream* out) { *out << specimen.name; }
+void PrintTo(const ConstraintSpecimen& specimen, std::ostream* out) { *out << specimen.name; }
+
+}  // namespace taut
