@@ -18,16 +18,18 @@ void check_bounds(const char* owner, double lower, double upper) {
   }
 }
 
-/// The smoothed projection of a number onto [lower, upper]: how far z moves down, and the slope of the projection.
+/// The smoothed projection of a number onto [lower, upper]: how far z moves down, the slope of the projection, and the
+/// derivative of the correction in epsilon.
 struct Smoothed {
-  double correction, slope;
+  double correction = 0, slope = 1, rate = 0;
 };
 
 Smoothed smoothed(double z, double lower, double upper, double epsilon) {
-  Smoothed out{0, 1};
+  Smoothed out;
   // One bound: correction (y + r)/2 and slope 1 - (1 + y/r)/2, r = sqrt(y^2 + 4 epsilon), each without cancellation.
   const auto add = [&](double y, double sign) {
     const double r = std::sqrt(y * y + 4 * epsilon);
+    out.rate += sign / r;
     out.correction += sign * (y >= 0 ? 0.5 * (y + r) : 2 * epsilon / (r - y));
     // Between two bounds the slopes' deficits add up; the larger deficit is kept as a slope so that nothing cancels.
     const double slope = y >= 0 ? 2 * epsilon / (r * (r + y)) : 0.5 * (1 - y / r);
@@ -55,13 +57,14 @@ void Box::project(Index /*element*/, const double* z, double* nearest, double* d
   }
 }
 
-void Box::project_smoothed(Index /*element*/, const double* z, double epsilon, double* nearest,
-                           double* derivative) const {
+void Box::project_smoothed(Index /*element*/, const double* z, double epsilon, double* nearest, double* derivative,
+                           double* rate) const {
   std::fill_n(derivative, dimension_ * dimension_, 0.0);
   for (int i = 0; i < dimension_; ++i) {
     const Smoothed s = smoothed(z[i], lower_, upper_, epsilon);
     nearest[i] = z[i] - s.correction;
     derivative[i * dimension_ + i] = s.slope;
+    rate[i] = -s.rate;
   }
 }
 
@@ -93,7 +96,7 @@ void SpectralBox::project(Index /*element*/, const double* z, double* nearest, d
 }
 
 void SpectralBox::project_smoothed(Index /*element*/, const double* z, double epsilon, double* nearest,
-                                   double* derivative) const {
+                                   double* derivative, double* rate) const {
   constexpr double root2 = std::numbers::sqrt2;
   const Eigen2 pair = eigen2(z[0], z[1] / root2, z[2]);
   const double y1 = pair.values[0], y2 = pair.values[1], gap = y1 - y2;
@@ -106,6 +109,7 @@ void SpectralBox::project_smoothed(Index /*element*/, const double* z, double ep
     omega = std::max(1 - (s1.correction - s2.correction) / gap, std::min(s1.slope, s2.slope));
   }
   Eigen::Map<Vector3>{nearest} = Eigen::Map<const Vector3>(z) - s1.correction * e1 - s2.correction * e2;
+  Eigen::Map<Vector3>{rate} = -s1.rate * e1 - s2.rate * e2;
   Eigen::Map<Matrix3>{derivative} =
       s1.slope * e1 * e1.transpose() + s2.slope * e2 * e2.transpose() + omega * e12 * e12.transpose();
 }

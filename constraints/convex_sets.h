@@ -11,8 +11,8 @@ class Box final : public ConvexSet {
   Box(int dimension, double lower, double upper);
   int dimension() const override { return dimension_; }
   void project(Index element, const double* z, double* nearest, double* derivative) const override;
-  void project_smoothed(Index element, const double* z, double epsilon, double* nearest,
-                        double* derivative) const override;
+  void project_smoothed(Index element, const double* z, double epsilon, double* nearest, double* derivative,
+                        double* rate) const override;
 
  private:
   int dimension_;
@@ -27,8 +27,8 @@ class SpectralBox final : public ConvexSet {
   SpectralBox(double lower, double upper);
   int dimension() const override { return 3; }
   void project(Index element, const double* z, double* nearest, double* derivative) const override;
-  void project_smoothed(Index element, const double* z, double epsilon, double* nearest,
-                        double* derivative) const override;
+  void project_smoothed(Index element, const double* z, double epsilon, double* nearest, double* derivative,
+                        double* rate) const override;
 
  private:
   double lower_, upper_;

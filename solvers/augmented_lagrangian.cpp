@@ -10,6 +10,23 @@
 #include "solvers/eliminated_slack.h"
 
 namespace taut {
+namespace {
+
+/// Replaces `projected` by the multipliers of `slack`, but zero in elements where `projected` is zero and the norm is
+/// below 1e-6 of the largest.
+void keep_significant(const EliminatedSlack& slack, Vector& projected) {
+  const Vector& own = slack.multipliers();
+  const int rows = slack.constraint().rows();
+  double largest = 0;
+  for (Index first = 0; first < own.size(); first += rows) largest = std::max(largest, own.segment(first, rows).norm());
+  for (Index first = 0; first < own.size(); first += rows) {
+    const bool negligible =
+        projected.segment(first, rows).isZero(0) && own.segment(first, rows).norm() <= 1e-6 * largest;
+    if (!negligible) projected.segment(first, rows) = own.segment(first, rows);
+  }
+}
+
+}  // namespace
 
 void AugmentedLagrangianOptions::validate() const {
   const auto require = [](bool ok, const char* what) {
@@ -222,20 +239,6 @@ bool AugmentedLagrangian::Run::closest_compromise(NewtonState& state) {
   return state.nodal_norm <= 1e-3 * scale;
 }
 
-/// Replaces `projected` by the multipliers of `slack`, but zero in elements where `projected` is zero and the norm is
-/// below 1e-6 of the largest.
-static void keep_significant(const EliminatedSlack& slack, Vector& projected) {
-  const Vector& own = slack.multipliers();
-  const int rows = slack.constraint().rows();
-  double largest = 0;
-  for (Index first = 0; first < own.size(); first += rows) largest = std::max(largest, own.segment(first, rows).norm());
-  for (Index first = 0; first < own.size(); first += rows) {
-    const bool negligible =
-        projected.segment(first, rows).isZero(0) && own.segment(first, rows).norm() <= 1e-6 * largest;
-    if (!negligible) projected.segment(first, rows) = own.segment(first, rows);
-  }
-}
-
 /// Tries the central path from the warm start; on success `result` and `judged` hold the solution, else the warm start
 /// is restored.
 bool AugmentedLagrangian::Run::central_path() {
@@ -246,7 +249,7 @@ bool AugmentedLagrangian::Run::central_path() {
   Vector x = result.x;
   const bool solved = follow_central_path(
       work.assembly, work.cholesky, work.slacks, problem.node_size, judged.force_scale,
-      options.tolerances.stationarity * judged.force_scale, options.central_path, x,
+      options.tolerances.stationarity * judged.force_scale, options.central_path, options.threads, x,
       [&](const Vector& candidate) {
         result.x = candidate;
         // Projected multipliers vanish where a constraint is not active; the path's own are positive everywhere, but
@@ -255,10 +258,10 @@ bool AugmentedLagrangian::Run::central_path() {
           work.slacks[k].updated_multipliers(candidate, std::numeric_limits<double>::infinity(), result.multipliers[k]);
         }
         judged = residuals(problem, result);
-        if (judged.within(options.tolerances)) return true;
+        if (judged.within(options.tolerances)) return merit(judged);
         for (std::size_t k = 0; k < work.slacks.size(); ++k) keep_significant(work.slacks[k], result.multipliers[k]);
         judged = residuals(problem, result);
-        return judged.within(options.tolerances);
+        return merit(judged);
       },
       budget, result.counts, result.timings);
   for (std::size_t k = 0; k < work.slacks.size(); ++k) work.slacks[k].set_penalty(start_penalty[k]);

@@ -12,25 +12,28 @@ namespace taut {
 
 struct CentralPathOptions {
   bool enabled = true;
-  double penalty_fraction = 0.01;  ///< of the augmented Lagrangian's penalty: the scale mu in y = c + lambda/mu
-  double reduction = 0.1;          ///< of epsilon mu from one centre to the next
-  double centred = 8;              ///< mismatch over smoothing width below which epsilon is reduced
+  double penalty_fraction = 0.03;  ///< of the augmented Lagrangian's penalty: the scale mu in y = c + lambda/mu
+  double reduction = 0.1;          ///< of epsilon mu aimed at in one step
+  double centred = 20;             ///< mismatch over smoothing width below which a reduction is aimed at
+  double careful = 2;              ///< the same once a step has been cut to a quarter or less
   double smallest_width = 1e-9;    ///< final smoothing width, in the constraint's scale
-  int max_iterations = 30;         ///< linear solves before the augmented Lagrangian takes over
+  int max_iterations = 50;         ///< linear solves before the augmented Lagrangian takes over
   int max_halvings = 6;
   void validate() const;
 };
 
 /// Follows the path of problems in which each eliminated slack carries a logarithmic barrier: min over s of L_A(x, s) -
 /// tau sum log s. The slack is still eliminated in closed form (ConvexSet::project_smoothed), which makes the
-/// conditions smooth, and multipliers move in the same Newton step as x. It needs few linear solves where it works;
-/// where it does not (both limits of one triangle at once, indefinite curvature) it says so.
+/// conditions smooth; positions, multipliers and the barrier move in the same Newton step, along the path's tangent. It
+/// needs few linear solves where it works; where it does not (both limits of one triangle at once, indefinite
+/// curvature) it says so.
 ///
 /// `assembly` sums the problem's energies and the `slacks`; all are borrowed, and the slacks are left with their last
-/// multipliers. Returns true where `accept(x)` did; `accept` is asked once smoothing and residual are small.
+/// multipliers. `judge(x)` gives the worst of the residuals over their tolerances; it is asked once smoothing and
+/// forces are small, and at most 1 ends the path with true.
 bool follow_central_path(Assembly& assembly, Cholesky& cholesky, std::deque<EliminatedSlack>& slacks, int node_size,
-                         double force_scale, double force_tolerance, const CentralPathOptions& options, Vector& x,
-                         const std::function<bool(const Vector&)>& accept, const Budget& budget, Counts& counts,
-                         Timings& timings);
+                         double force_scale, double force_tolerance, const CentralPathOptions& options, int threads,
+                         Vector& x, const std::function<double(const Vector&)>& judge, const Budget& budget,
+                         Counts& counts, Timings& timings);
 
 }  // namespace taut

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/parallel.h"
+
 namespace taut {
 namespace {
 
@@ -29,7 +31,7 @@ void EliminatedSlack::set_multipliers(const Vector& multipliers) {
 double EliminatedSlack::evaluate(Index element, const double* x, double* gradient, double* hessian,
                                  Curvature curvature) const {
   if (linearisation_ != Linearisation::augmented_lagrangian)
-    return evaluate_primal_dual(element, x, gradient, hessian, curvature);
+    return evaluate_path(element, x, gradient, hessian, curvature);
   const int rows = constraint_.rows(), width = stencils().width();
   const double* lambda = multipliers_.data() + element * rows;
   const double weight = constraint_.weight(element);
@@ -80,80 +82,116 @@ double EliminatedSlack::evaluate(Index element, const double* x, double* gradien
   return value * weight / (2 * penalty_);
 }
 
-/// One element of the smoothed conditions F = lambda - lambda_s = 0, lambda_s = mu (y - P_s y), y = c + lambda/mu. With
-/// D = P_s', Newton's equation D dlambda = mu (I - D) J dx - F eliminates dlambda = W J dx - D^{-1} F, W = mu D^{-1} (I
-/// - D). D is kept from singularity by a shift that caps W at 1e8 mu.
-struct EliminatedSlack::PrimalDual {
-  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, max_rows, max_rows>;
-  using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, max_rows, 1>;
-  using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, max_rows, max_stencil_width>;
-  Column c, next, mismatch, correction;  // c, lambda_s, F, D^{-1} F
-  Jacobian jacobian;
-  Square stiffness;  // W
+/// The smoothed conditions F = lambda - lambda_s = 0, lambda_s = mu (y - P_s(y, epsilon)), y = c + lambda/mu, of all
+/// elements. With D = dP_s/dy, Newton's equation towards epsilon + depsilon, D dlambda = mu (I - D) J dx - F - mu
+/// dP_s/depsilon depsilon, eliminates dlambda = W J dx - r, W = mu D^{-1} (I - D). D is kept from singularity by a
+/// shift that caps W at 1e8 mu.
+struct EliminatedSlack::Path {
+  int rows, width;
+  double epsilon = 0;
+  // One column per element.
+  Matrix smoothed;    // lambda_s
+  Matrix mismatch;    // F
+  Matrix rate;        // dP_s/depsilon
+  Matrix jacobian;    // J, rows x width
+  Matrix slope;       // D, rows x rows
+  Matrix stiffness;   // W, rows x rows
+  Matrix correction;  // r
+  Vector square;      // |F|^2/mu^2
 
-  PrimalDual(const EliminatedSlack& slack, Index element, const double* x, bool with_jacobian) {
-    constexpr double shift = 1e-8;
-    const Constraint& constraint = slack.constraint_;
-    const int rows = constraint.rows();
-    const Eigen::Map<const Vector> lambda(slack.multipliers_.data() + element * rows, rows);
-    c.resize(rows);
-    if (with_jacobian) jacobian.resize(rows, constraint.stencils().width());
-    constraint.evaluate(element, x, c.data(), with_jacobian ? jacobian.data() : nullptr);
-    const Column y = c + lambda / slack.penalty_;
-    Column nearest(rows);
-    Square slope(rows, rows);
-    constraint.set().project_smoothed(element, y.data(), slack.epsilon_, nearest.data(), slope.data());
-    next = slack.penalty_ * (y - nearest);
-    mismatch = lambda - next;
-    if (!with_jacobian) return;
-    const Square identity = Square::Identity(rows, rows), inverse = invert(slope + shift * identity);
-    stiffness = slack.penalty_ * inverse.lazyProduct(identity - slope);
-    stiffness = Square(0.5 * (stiffness + stiffness.transpose()));
-    correction = inverse.lazyProduct(mismatch);
+  Path(int r, int w, Index count)
+      : rows(r),
+        width(w),
+        smoothed(r, count),
+        mismatch(r, count),
+        rate(r, count),
+        jacobian(r * w, count),
+        slope(r * r, count),
+        stiffness(r * r, count),
+        correction(r, count),
+        square(count) {}
+
+  /// A local matrix of fixed size where R and W are positive, else of any size that stencils and rows can have.
+  template <int R, int W>
+  using Local = Eigen::Matrix < double,
+        R < 0 ? Eigen::Dynamic : R, W < 0 ? Eigen::Dynamic : W, 0, R < 0 ? max_rows : R, W<0 ? max_stencil_width : W>;
+  template <int R>
+  static Local<R, R> inverse(const Local<R, R>& matrix) {
+    if constexpr (R == 3) return matrix.inverse();
+    if (matrix.rows() == 1) return Local<R, R>::Constant(1, 1, 1 / matrix(0, 0));
+    return matrix.ldlt().solve(Local<R, R>::Identity(matrix.rows(), matrix.rows()));
   }
 
-  static Square invert(const Square& matrix) {
-    if (matrix.rows() == 1) return Square::Constant(1, 1, 1 / matrix(0, 0));
-    if (matrix.rows() == 3) return Matrix3(matrix).inverse();
-    return matrix.ldlt().solve(Square::Identity(matrix.rows(), matrix.rows()));
+  template <int R>
+  void linearise(Index element, double penalty, double change) {
+    constexpr double shift = 1e-8;
+    const Eigen::Map<const Local<R, R>> d(slope.col(element).data(), rows, rows);
+    const Local<R, R> identity = Local<R, R>::Identity(rows, rows);
+    const Local<R, R> inverted = inverse<R>(d + shift * identity);
+    Eigen::Map<Local<R, R>> w(stiffness.col(element).data(), rows, rows);
+    w = inverted;
+    w -= inverted * d;
+    w = (0.5 * penalty * (w + w.transpose())).eval();
+    for (int i = 0; i < rows; ++i) {
+      double sum = 0;
+      for (int j = 0; j < rows; ++j)
+        sum += inverted(i, j) * (mismatch(j, element) + penalty * change * rate(j, element));
+      correction(i, element) = sum;
+    }
+  }
+  template <int R, int W>
+  void gradient(Index element, double weight, const double* lambda, const double* less, double* out) const {
+    const Eigen::Map<const Local<R, W>> j(jacobian.col(element).data(), rows, width);
+    Local<R, 1> force = Eigen::Map<const Local<R, 1>>(lambda, rows);
+    if (less) force -= Eigen::Map<const Local<R, 1>>(less, rows);
+    Eigen::Map<Local<W, 1>>(out, width) = weight * j.transpose().lazyProduct(force);
+  }
+  /// Adds J^T W J and multiplies by the weight.
+  template <int R, int W>
+  void hessian(Index element, double weight, double* out) const {
+    const Eigen::Map<const Local<R, W>> j(jacobian.col(element).data(), rows, width);
+    const Eigen::Map<const Local<R, R>> w(stiffness.col(element).data(), rows, rows);
+    const Local<R, W> stiff = w.lazyProduct(j);
+    Eigen::Map<Local<W, W>> h(out, width, width);
+    for (int k = 0; k < width; ++k) h.col(k) = weight * (h.col(k) + j.transpose().lazyProduct(stiff.col(k)));
+  }
+
+  /// task(first, last) for ranges of elements, each once.
+  template <class Task>
+  void for_ranges(int threads, const Task& task) const {
+    parallel_for(threads, [&](int t) { task(square.size() * t / threads, square.size() * (t + 1) / threads); });
   }
 };
 
-double EliminatedSlack::evaluate_primal_dual(Index element, const double* x, double* gradient, double* hessian,
-                                             Curvature curvature) const {
-  if (!gradient) return 0;
-  const int rows = constraint_.rows(), width = stencils().width();
-  const double weight = constraint_.weight(element);
-  const Eigen::Map<const Vector> lambda(multipliers_.data() + element * rows, rows);
-  if (linearisation_ == Linearisation::held) {
-    Rows c;
-    PrimalDual::Jacobian jacobian(rows, width);
-    constraint_.evaluate(element, x, c.data(), jacobian.data());
-    Eigen::Map<Vector>(gradient, width) = weight * jacobian.transpose().lazyProduct(lambda);
-    return 0;
-  }
-  const PrimalDual local(*this, element, x, true);
-  Eigen::Map<Vector>(gradient, width) = weight * local.jacobian.transpose().lazyProduct(lambda - local.correction);
-  if (hessian) {
-    constraint_.hessian(element, x, local.next.data(), curvature, hessian);
-    const PrimalDual::Jacobian stiff = local.stiffness.lazyProduct(local.jacobian);
-    Eigen::Map<Matrix> h(hessian, width, width);
-    h += local.jacobian.transpose().lazyProduct(stiff);
-    h *= weight;
-  }
-  return 0;
-}
-
-EliminatedSlack::Mismatch EliminatedSlack::mismatch(const Vector& x) const {
-  std::array<double, max_stencil_width> local;
+EliminatedSlack::Mismatch EliminatedSlack::set_point(const Vector& x, double epsilon, int threads) {
+  const int rows = constraint_.rows();
+  if (!path_) path_ = std::make_unique<Path>(rows, stencils().width(), stencils().count());
+  Path& path = *path_;
+  path.epsilon = epsilon;
+  path.for_ranges(threads, [&](Index first, Index last) {
+    std::array<double, max_stencil_width> local;
+    Rows c, y, nearest;
+    for (Index element = first; element < last; ++element) {
+      stencils().gather(element, x, local.data());
+      constraint_.evaluate(element, local.data(), c.data(), path.jacobian.col(element).data());
+      const double* lambda = multipliers_.data() + element * rows;
+      for (int i = 0; i < rows; ++i) y[i] = c[i] + lambda[i] / penalty_;
+      constraint_.set().project_smoothed(element, y.data(), epsilon, nearest.data(), path.slope.col(element).data(),
+                                         path.rate.col(element).data());
+      double square = 0;
+      for (int i = 0; i < rows; ++i) {
+        path.smoothed(i, element) = penalty_ * (y[i] - nearest[i]);
+        path.mismatch(i, element) = lambda[i] - path.smoothed(i, element);
+        square += path.mismatch(i, element) * path.mismatch(i, element);
+      }
+      path.square[element] = square / (penalty_ * penalty_);
+    }
+  });
   Mismatch out;
   double weights = 0;
-  for (Index element = 0; element < stencils().count(); ++element) {
-    stencils().gather(element, x, local.data());
-    const double square =
-        PrimalDual(*this, element, local.data(), false).mismatch.squaredNorm() / (penalty_ * penalty_);
-    if (!(square <= out.max)) out.max = square;
-    out.mean_square += constraint_.weight(element) * square;
+  for (Index element = 0; element < path.square.size(); ++element) {
+    if (!(path.square[element] <= out.max)) out.max = path.square[element];
+    out.mean_square += constraint_.weight(element) * path.square[element];
     weights += constraint_.weight(element);
   }
   out.max = std::sqrt(out.max);
@@ -161,18 +199,68 @@ EliminatedSlack::Mismatch EliminatedSlack::mismatch(const Vector& x) const {
   return out;
 }
 
-void EliminatedSlack::multiplier_step(const Vector& x, const Vector& dx, Vector& step) const {
-  const int rows = constraint_.rows(), width = stencils().width();
-  std::array<double, max_stencil_width> local, moved;
-  step.resize(multipliers_.size());
-  for (Index element = 0; element < stencils().count(); ++element) {
-    stencils().gather(element, x, local.data());
-    stencils().gather(element, dx, moved.data());
-    const PrimalDual here(*this, element, local.data(), true);
-    const PrimalDual::Column change = here.jacobian.lazyProduct(Eigen::Map<const Vector>(moved.data(), width));
-    step.segment(element * rows, rows) = here.stiffness.lazyProduct(change) - here.correction;
-  }
+void EliminatedSlack::linearise(double target_epsilon, int threads) {
+  Path& path = *path_;
+  const double change = target_epsilon - path.epsilon;
+  path.for_ranges(threads, [&](Index first, Index last) {
+    for (Index element = first; element < last; ++element) {
+      if (path.rows == 3) {
+        path.linearise<3>(element, penalty_, change);
+      } else {
+        path.linearise<-1>(element, penalty_, change);
+      }
+    }
+  });
 }
+
+double EliminatedSlack::evaluate_path(Index element, const double* x, double* gradient, double* hessian,
+                                      Curvature curvature) const {
+  if (!gradient) return 0;
+  const Path& path = *path_;
+  const bool triangle = path.rows == 3 && path.width == 9;
+  const double weight = constraint_.weight(element);
+  const double* lambda = multipliers_.data() + element * path.rows;
+  const double* less = linearisation_ == Linearisation::held ? nullptr : path.correction.col(element).data();
+  if (triangle) {
+    path.gradient<3, 9>(element, weight, lambda, less, gradient);
+  } else {
+    path.gradient<-1, -1>(element, weight, lambda, less, gradient);
+  }
+  if (!hessian) return 0;
+  constraint_.hessian(element, x, path.smoothed.col(element).data(), curvature, hessian);
+  if (triangle) {
+    path.hessian<3, 9>(element, weight, hessian);
+  } else {
+    path.hessian<-1, -1>(element, weight, hessian);
+  }
+  return 0;
+}
+
+void EliminatedSlack::multiplier_step(const Vector& dx, int threads, Vector& step) const {
+  const Path& path = *path_;
+  const int rows = path.rows, width = path.width;
+  step.resize(multipliers_.size());
+  path.for_ranges(threads, [&](Index first, Index last) {
+    std::array<double, max_stencil_width> moved;
+    Rows change;
+    for (Index element = first; element < last; ++element) {
+      stencils().gather(element, dx, moved.data());
+      const double* jacobian = path.jacobian.col(element).data();
+      for (int i = 0; i < rows; ++i) {
+        change[i] = 0;
+        for (int k = 0; k < width; ++k) change[i] += jacobian[k * rows + i] * moved[k];
+      }
+      const double* stiffness = path.stiffness.col(element).data();
+      for (int i = 0; i < rows; ++i) {
+        double sum = -path.correction(i, element);
+        for (int j = 0; j < rows; ++j) sum += stiffness[j * rows + i] * change[j];
+        step[element * rows + i] = sum;
+      }
+    }
+  });
+}
+
+EliminatedSlack::~EliminatedSlack() = default;
 
 void EliminatedSlack::updated_multipliers(const Vector& x, double cap, Vector& updated) const {
   const int rows = constraint_.rows();

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "core/constraint.h"
 #include "core/energy.h"
 
@@ -14,6 +16,7 @@ class EliminatedSlack final : public Energy {
  public:
   /// `constraint` is borrowed; multipliers start at zero.
   explicit EliminatedSlack(const Constraint& constraint);
+  ~EliminatedSlack() override;
 
   const Constraint& constraint() const { return constraint_; }
   /// One vector entry per row of each element.
@@ -26,22 +29,23 @@ class EliminatedSlack final : public Energy {
   /// Adds w J^T (lambda+ - lambda) at x to `force`: how much the forces would change by an update now.
   void add_update_force(const Vector& x, Vector& force) const;
 
-  /// What evaluate() linearises: the augmented Lagrangian above; or, for the central path (central_path.h), the
-  /// conditions lambda = lambda_s(x, lambda) with the slack eliminated under a barrier, solved for x and lambda at once
-  /// (`primal_dual`: gradient and matrix of the Newton system after lambda's elimination, value 0); or only w J^T
-  /// lambda (`held`: gradient, value 0).
-  enum class Linearisation { augmented_lagrangian, primal_dual, held };
+  /// What evaluate() gives: the augmented Lagrangian above; or, of the central path (central_path.h) and at the point
+  /// last given to set_point() only: w J^T lambda (`held`: gradient, value 0), or what is left of
+  /// Newton's system for x and lambda after lambda is eliminated (`primal_dual`: gradient and matrix, value 0).
+  enum class Linearisation { augmented_lagrangian, held, primal_dual };
   void set_linearisation(Linearisation linearisation) { linearisation_ = linearisation; }
-  /// The square of the smoothing width, in the constraint's units squared; positive for `primal_dual`.
-  void set_epsilon(double epsilon) { epsilon_ = epsilon; }
-  /// How far lambda is from lambda_s at x, divided by the penalty: the largest over the elements, and the weighted mean
+  /// How far lambda is from lambda_s, divided by the penalty: the largest over the elements, and the weighted mean
   /// square.
   struct Mismatch {
     double max = 0, mean_square = 0;
   };
-  Mismatch mismatch(const Vector& x) const;
-  /// The change of lambda that belongs to the change dx of the primal_dual system at x.
-  void multiplier_step(const Vector& x, const Vector& dx, Vector& step) const;
+  /// Evaluates the smoothed conditions lambda = lambda_s(x, lambda) at x, with epsilon the square of the smoothing
+  /// width in the constraint's units squared.
+  Mismatch set_point(const Vector& x, double epsilon, int threads);
+  /// Linearises them there in x, lambda and epsilon, towards `target_epsilon`.
+  void linearise(double target_epsilon, int threads);
+  /// The change of lambda that belongs to the change dx of the linearised system.
+  void multiplier_step(const Vector& dx, int threads, Vector& step) const;
 
   std::string name() const override { return constraint_.name(); }
   const Stencils& stencils() const override { return constraint_.stencils(); }
@@ -53,15 +57,14 @@ class EliminatedSlack final : public Energy {
   }
 
  private:
-  struct PrimalDual;
-  double evaluate_primal_dual(Index element, const double* x, double* gradient, double* hessian,
-                              Curvature curvature) const;
+  struct Path;
+  double evaluate_path(Index element, const double* x, double* gradient, double* hessian, Curvature curvature) const;
 
   const Constraint& constraint_;
   Vector multipliers_;
   double penalty_ = 1;
-  double epsilon_ = 0;
   Linearisation linearisation_ = Linearisation::augmented_lagrangian;
+  std::unique_ptr<Path> path_;  ///< what set_point() and linearise() keep of every element
 };
 
 }  // namespace taut

@@ -35,12 +35,6 @@ struct Side {
     sign = k == 2 ? -1.0 : 1.0;
   }
 
-  void add_gradient(Vector12& g) const {
-    g.segment<3>(0) += sign * (t / length - length) * w;
-    g.segment<3>(3) -= sign * (t / length) * w;
-    g.segment<3>(3 * apex) += sign * length * w;
-  }
-
   /// Adds scale * d(theta')/dx of this side.
   void add_hessian(double scale, Matrix12& h) const {
     const std::array<int, 3> nodes{0, 1, apex};
@@ -68,8 +62,8 @@ struct Side {
 
 double hinge_angle(const double* x) {
   const Eigen::Map<const Eigen::Matrix<double, 3, 4>> p(x);
-  const Vector3 e = p.col(1) - p.col(0), n1 = e.cross(p.col(2) - p.col(0)), n2 = (p.col(3) - p.col(0)).cross(e);
-  return std::atan2(n1.cross(n2).dot(e), n1.dot(n2) * e.norm());
+  const Vector3 e = p.col(1) - p.col(0), b = p.col(3) - p.col(0), n1 = e.cross(p.col(2) - p.col(0));
+  return std::atan2(-e.norm() * n1.dot(b), n1.dot(b.cross(e)));
 }
 
 namespace {
@@ -163,21 +157,29 @@ HingeBending::HingeBending(std::string name, std::vector<Hinge> hinges)
 double HingeBending::evaluate(Index element, const double* x, double* gradient, double* hessian,
                               Curvature curvature) const {
   const Hinge& hinge = hinges_[element];
-  const double off = hinge_angle(x) - hinge.rest_angle;
+  const Eigen::Map<const Eigen::Matrix<double, 3, 4>> p(x);
+  const Vector3 e = p.col(1) - p.col(0), a = p.col(2) - p.col(0), b = p.col(3) - p.col(0);
+  const Vector3 n1 = e.cross(a), n2 = b.cross(e);
+  const double length = e.norm();
+  const double off = std::atan2(-length * n1.dot(b), n1.dot(n2)) - hinge.rest_angle;
   if (gradient) {
-    const Eigen::Map<const Eigen::Matrix<double, 3, 4>> p(x);
-    const Side left(p, 2), right(p, 3);
-    Vector12 slope = Vector12::Zero();
-    left.add_gradient(slope);
-    right.add_gradient(slope);
+    const Vector3 w1 = n1 / n1.squaredNorm(), w2 = n2 / n2.squaredNorm();
+    const double ta = a.dot(e) / length, tb = b.dot(e) / length;
+    Vector12 slope;
+    for (int axis = 0; axis < 3; ++axis) {
+      slope[axis] = (length - ta) * w1[axis] + (length - tb) * w2[axis];
+      slope[3 + axis] = ta * w1[axis] + tb * w2[axis];
+      slope[6 + axis] = -length * w1[axis];
+      slope[9 + axis] = -length * w2[axis];
+    }
     Eigen::Map<Vector12>{gradient} = hinge.stiffness * off * slope;
     if (hessian) {
       Eigen::Map<Matrix12> h(hessian);
       h.noalias() = (hinge.stiffness * slope) * slope.transpose();
       if (curvature == Curvature::exact) {
         Matrix12 turn = Matrix12::Zero();
-        left.add_hessian(hinge.stiffness * off, turn);
-        right.add_hessian(hinge.stiffness * off, turn);
+        Side(p, 2).add_hessian(hinge.stiffness * off, turn);
+        Side(p, 3).add_hessian(hinge.stiffness * off, turn);
         h += 0.5 * (turn + turn.transpose());
       }
     }

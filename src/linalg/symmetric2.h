@@ -13,9 +13,9 @@ struct Eigen2 {
 };
 
 /// Closed form for [a b; b c]; relative accuracy of the larger value in magnitude is about 1e-16, coincident values are
-/// fine.
+/// fine; entries have to be between 1e-150 and 1e150 in magnitude, or zero.
 inline Eigen2 eigen2(double a, double b, double c) {
-  const double mean = 0.5 * (a + c), half = 0.5 * (a - c), radius = std::hypot(half, b);
+  const double mean = 0.5 * (a + c), half = 0.5 * (a - c), radius = std::sqrt(half * half + b * b);
   Eigen2 pair;
   pair.values[0] = mean + radius;
   pair.values[1] = mean - radius;
@@ -29,9 +29,9 @@ inline Eigen2 eigen2(double a, double b, double c) {
       x = std::abs(b);
       y = std::copysign(radius - half, b);
     }
-    const double norm = std::hypot(x, y);
-    x /= norm;
-    y /= norm;
+    const double inverse = 1 / std::sqrt(x * x + y * y);
+    x *= inverse;
+    y *= inverse;
   }
   pair.vectors << x, -y, y, x;
   return pair;

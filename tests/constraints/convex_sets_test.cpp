@@ -70,7 +70,7 @@ TEST_P(EverySet, ProjectsPointsOfTheSetToThemselves) {
 TEST_P(EverySet, ProjectsFirmlyNonExpansively) {
   for (int sample = 0; sample < 300; ++sample) {
     const Vector a = any(), b = any(), moved = project(a) - project(b);
-    EXPECT_LE(moved.squaredNorm(), moved.dot(a - b) + 1e-15);
+    EXPECT_LE(moved.squaredNorm(), moved.dot(a - b) + 1e-14);
   }
 }
 
@@ -97,9 +97,16 @@ TEST_P(EverySet, HasASmoothedProjectionWithinTheWidthOfTheTrueOneWhoseDerivative
   for (double width : {0.1, 1e-2, 1e-3}) {
     const double step = 1e-4 * width;
     const auto smoothed = [&](const Vector& z, Matrix& derivative) {
-      Vector nearest(z.size());
+      Vector nearest(z.size()), rate(z.size());
       derivative.resize(z.size(), z.size());
-      set_->project_smoothed(0, z.data(), width * width, nearest.data(), derivative.data());
+      set_->project_smoothed(0, z.data(), width * width, nearest.data(), derivative.data(), rate.data());
+      return nearest;
+    };
+    const auto at_epsilon = [&](const Vector& z, double epsilon, Vector& rate) {
+      Vector nearest(z.size());
+      Matrix derivative(z.size(), z.size());
+      rate.resize(z.size());
+      set_->project_smoothed(0, z.data(), epsilon, nearest.data(), derivative.data(), rate.data());
       return nearest;
     };
     for (int sample = 0; sample < 200; ++sample) {
@@ -114,6 +121,11 @@ TEST_P(EverySet, HasASmoothedProjectionWithinTheWidthOfTheTrueOneWhoseDerivative
       const Vector ahead = smoothed(z + step * direction, elsewhere),
                    behind = smoothed(z - step * direction, elsewhere);
       EXPECT_LE((derivative * direction - (ahead - behind) / (2 * step)).norm(), 1e-7) << width;
+      Vector rate, unused;
+      const double epsilon = width * width, change = 1e-4 * epsilon, round_off = 1e-15;
+      at_epsilon(z, epsilon, rate);
+      const Vector difference = at_epsilon(z, epsilon + change, unused) - at_epsilon(z, epsilon - change, unused);
+      EXPECT_LE((rate - difference / (2 * change)).norm(), 1e-6 * rate.norm() + round_off / change) << width;
     }
   }
 }

@@ -73,16 +73,20 @@ TEST_P(SlackOfEveryConstraint, UpdateIsCappedInNormAndKeepsItsDirection) {
 TEST_P(SlackOfEveryConstraint, PrimalDualStepReducesTheMismatchAtFirstOrderByItsFraction) {
   slack_.set_penalty(20.0);
   slack_.set_multipliers(RandomValues(2).vector(rows_));
-  slack_.set_epsilon(1.0);  // wide, so that a step of 1e-5 is small everywhere
+  const double epsilon = 1.0, target = 0.7;  // wide, so that a step of 1e-5 is small everywhere
   const Vector x = posed(Pose::stretched), dx = 0.1 * RandomValues(3).vector(x.size()),
                multipliers = slack_.multipliers();
-  Vector step;
-  slack_.multiplier_step(x, dx, step);
-  const double before = slack_.mismatch(x).mean_square, t = 1e-5;
-  slack_.set_multipliers(multipliers + t * step);
-  const double ahead = slack_.mismatch(x + t * dx).mean_square;
-  slack_.set_multipliers(multipliers - t * step);
-  const double behind = slack_.mismatch(x - t * dx).mean_square;
+  const double before = slack_.set_point(x, epsilon, 1).mean_square, t = 1e-5;
+  Vector step, shared;
+  slack_.linearise(target, 1);
+  slack_.multiplier_step(dx, 1, step);
+  slack_.multiplier_step(dx, 3, shared);
+  EXPECT_EQ(step, shared);
+  const auto along = [&](double fraction) {
+    slack_.set_multipliers(multipliers + fraction * step);
+    return slack_.set_point(x + fraction * dx, epsilon + fraction * (target - epsilon), 2).mean_square;
+  };
+  const double ahead = along(t), behind = along(-t);
   EXPECT_GT(before, 1e-6);
   EXPECT_NEAR((ahead - behind) / (2 * t), -2 * before, 1e-5 * before);
 }
@@ -90,11 +94,12 @@ TEST_P(SlackOfEveryConstraint, PrimalDualStepReducesTheMismatchAtFirstOrderByIts
 TEST_P(SlackOfEveryConstraint, PrimalDualSystemForecastsTheForceOfTheSteppedMultipliers) {
   slack_.set_penalty(20.0);
   slack_.set_multipliers(RandomValues(2).vector(rows_));
-  slack_.set_epsilon(0.01);
   slack_.set_linearisation(EliminatedSlack::Linearisation::primal_dual);
   const Vector x = posed(Pose::stretched), dx = RandomValues(3).vector(x.size());
+  slack_.set_point(x, 0.01, 1);
+  slack_.linearise(0.004, 1);
   Vector step;
-  slack_.multiplier_step(x, dx, step);
+  slack_.multiplier_step(dx, 1, step);
   const Vector stepped = slack_.multipliers() + step;
   const int width = slack_.stencils().width(), rows = constraint_->rows();
   Vector local(width), local_dx(width), gradient(width), c(rows);
@@ -109,9 +114,10 @@ TEST_P(SlackOfEveryConstraint, PrimalDualSystemForecastsTheForceOfTheSteppedMult
     Matrix curvature(width, width);
     const Vector held = exact * local_dx + gradient;
     const Vector forecast = constraint_->weight(element) * jacobian.transpose() * stepped.segment(element * rows, rows);
-    Vector smoothed(rows), nearest(rows), y = c + slack_.multipliers().segment(element * rows, rows) / slack_.penalty();
+    Vector smoothed(rows), nearest(rows), rate(rows),
+        y = c + slack_.multipliers().segment(element * rows, rows) / slack_.penalty();
     Matrix slope(rows, rows);
-    constraint_->set().project_smoothed(element, y.data(), 0.01, nearest.data(), slope.data());
+    constraint_->set().project_smoothed(element, y.data(), 0.01, nearest.data(), slope.data(), rate.data());
     smoothed = slack_.penalty() * (y - nearest);
     constraint_->hessian(element, local.data(), smoothed.data(), Curvature::exact, curvature.data());
     EXPECT_LE((held - constraint_->weight(element) * curvature * local_dx - forecast).norm(),
