@@ -34,13 +34,14 @@ class CentralPath {
 
   /// Smoothing in proportion to how badly the warm-started multipliers fit.
   void start(const Vector& x) {
+    for (EliminatedSlack& slack : slacks_) slack.set_linearisation(Linearisation::central_path);
     {
       const Stopwatch watch(timings_.assembly);
       width_ = 1e-6;
       set_point(x);
       width_ = std::clamp(0.3 * worst_mismatch_, 1e-5, 0.1);
     }
-    measure(x);
+    measure(x, true);
   }
 
   double width() const { return width_; }
@@ -53,14 +54,14 @@ class CentralPath {
   bool step(const Vector& x) {
     start_width_ = target_width_ = width_;
     if (centred()) target_width_ = std::max(std::sqrt(options_.reduction) * width_, options_.smallest_width);
+    if (!matrix_is_here_) measure(x, true);
+    right_hand_side_ = gradient_;
     {
       const Stopwatch watch(timings_.assembly);
       for (EliminatedSlack& slack : slacks_) {
         const double scaled = target_width_ * slack.constraint().violation_scale();
-        slack.linearise(scaled * scaled, threads_);
-        slack.set_linearisation(Linearisation::primal_dual);
+        slack.aim(scaled * scaled, threads_, right_hand_side_);
       }
-      assembly_.hessian(x, Curvature::positive_semidefinite, &gradient_);
     }
     {
       const Stopwatch watch(timings_.factorization);
@@ -70,8 +71,8 @@ class CentralPath {
     {
       const Stopwatch watch(timings_.solve);
       ++counts_.linear_solves;
-      assembly_.to_ordered(gradient_, right_hand_side_);
-      cholesky_.solve(right_hand_side_, solution_);
+      assembly_.to_ordered(right_hand_side_, ordered_);
+      cholesky_.solve(ordered_, solution_);
       assembly_.from_ordered(solution_, step_);
       step_ = -step_;
     }
@@ -84,27 +85,28 @@ class CentralPath {
     return step_.allFinite();
   }
 
-  /// Halves the step until the merit falls or the path is near, or takes the best fraction tried.
+  /// Halves the step until the merit does not rise much or the path is near, or takes the best fraction tried. The
+  /// first trial is usually taken, so the next matrix is made along with its forces.
   void advance(Vector& x) {
     const double before = merit_;
     double fraction = std::min(1.0, 0.9 * assembly_.largest_step(x, step_));
     double best_fraction = fraction, best = std::numeric_limits<double>::infinity();
     for (int halving = 0; halving < options_.max_halvings; ++halving) {
       if (halving > 0) fraction *= 0.5;
-      move(x, fraction);
+      move(x, fraction, halving == 0);
       if (merit_ < best) {
         best = merit_;
         best_fraction = fraction;
       }
-      const bool falling = merit_ <= (1 - 0.1 * fraction) * before;
+      const bool tolerable = merit_ <= options_.tolerated_rise * (1 - 0.1 * fraction) * before;
       // A shorter width raises the merit of a point that was on the path.
       const bool near = target_width_ < start_width_ && centred() && force_ <= width_ * force_scale_;
-      if (falling || (near && std::isfinite(merit_))) {
+      if (tolerable || (near && std::isfinite(merit_))) {
         best_fraction = fraction;
         break;
       }
     }
-    if (fraction != best_fraction) move(x, best_fraction);
+    if (fraction != best_fraction) move(x, best_fraction, false);
     if (best_fraction <= 0.25) centred_ = options_.careful;
     short_steps_ = best_fraction < 0.2 ? short_steps_ + 1 : 0;
     std::swap(x, trial_);
@@ -114,22 +116,28 @@ class CentralPath {
   bool centred() const { return worst_mismatch_ <= centred_ * width_; }
 
   /// Positions, multipliers and epsilon at a fraction of the step, measured.
-  void move(const Vector& x, double fraction) {
+  void move(const Vector& x, double fraction, bool with_matrix) {
     trial_ = x + fraction * step_;
     for (std::size_t k = 0; k < slacks_.size(); ++k) {
       slacks_[k].set_multipliers(start_multipliers_[k] + fraction * multiplier_steps_[k]);
     }
     width_ = std::sqrt((1 - fraction) * start_width_ * start_width_ + fraction * target_width_ * target_width_);
-    measure(trial_);
+    measure(trial_, with_matrix);
   }
 
-  /// Where x and the multipliers stand: sum of w J^T lambda and gradients, and the mismatch of the multipliers.
-  void measure(const Vector& x) {
+  /// Where x and the multipliers stand: sum of w J^T lambda and gradients, and the mismatch of the multipliers; with
+  /// the matrix of the Newton step from here where that is wanted.
+  void measure(const Vector& x, bool with_matrix) {
     const Stopwatch watch(timings_.assembly);
     ++counts_.function_evaluations;
     set_point(x);
-    for (EliminatedSlack& slack : slacks_) slack.set_linearisation(Linearisation::held);
-    assembly_.gradient(x, gradient_);
+    if (with_matrix) {
+      for (EliminatedSlack& slack : slacks_) slack.linearise(threads_);
+      assembly_.hessian(x, Curvature::positive_semidefinite, &gradient_);
+    } else {
+      assembly_.gradient(x, gradient_);
+    }
+    matrix_is_here_ = with_matrix;
     force_ = nodal_max_norm(gradient_, node_size_);
     merit_ += gradient_.squaredNorm() / (force_scale_ * force_scale_);
   }
@@ -157,7 +165,8 @@ class CentralPath {
   int short_steps_ = 0;
   double width_ = 0, start_width_ = 0, target_width_ = 0;
   double force_ = 0, worst_mismatch_ = 0, merit_ = 0;
-  Vector gradient_, right_hand_side_, solution_, step_, trial_;
+  bool matrix_is_here_ = false;
+  Vector gradient_, right_hand_side_, ordered_, solution_, step_, trial_;
   std::vector<Vector> multiplier_steps_, start_multipliers_;
 };
 
@@ -170,6 +179,7 @@ void CentralPathOptions::validate() const {
   require(penalty_fraction > 0, "penalty_fraction must be positive");
   require(reduction > 0 && reduction < 1, "reduction must be between 0 and 1");
   require(centred > 0 && careful > 0, "centred and careful must be positive");
+  require(tolerated_rise >= 1, "tolerated_rise must be at least 1");
   require(smallest_width > 0, "smallest_width must be positive");
   require(max_iterations >= 1 && max_halvings >= 1, "max_iterations and max_halvings must be at least 1");
 }

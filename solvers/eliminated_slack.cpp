@@ -95,6 +95,7 @@ struct EliminatedSlack::Path {
   Matrix rate;        // dP_s/depsilon
   Matrix jacobian;    // J, rows x width
   Matrix slope;       // D, rows x rows
+  Matrix inverse;     // D^{-1}, rows x rows
   Matrix stiffness;   // W, rows x rows
   Matrix correction;  // r
   Vector square;      // |F|^2/mu^2
@@ -107,6 +108,7 @@ struct EliminatedSlack::Path {
         rate(r, count),
         jacobian(r * w, count),
         slope(r * r, count),
+        inverse(r * r, count),
         stiffness(r * r, count),
         correction(r, count),
         square(count) {}
@@ -116,34 +118,26 @@ struct EliminatedSlack::Path {
   using Local = Eigen::Matrix < double,
         R < 0 ? Eigen::Dynamic : R, W < 0 ? Eigen::Dynamic : W, 0, R < 0 ? max_rows : R, W<0 ? max_stencil_width : W>;
   template <int R>
-  static Local<R, R> inverse(const Local<R, R>& matrix) {
+  static Local<R, R> inverse_of(const Local<R, R>& matrix) {
     if constexpr (R == 3) return matrix.inverse();
     if (matrix.rows() == 1) return Local<R, R>::Constant(1, 1, 1 / matrix(0, 0));
     return matrix.ldlt().solve(Local<R, R>::Identity(matrix.rows(), matrix.rows()));
   }
 
   template <int R>
-  void linearise(Index element, double penalty, double change) {
+  void linearise(Index element, double penalty) {
     constexpr double shift = 1e-8;
     const Eigen::Map<const Local<R, R>> d(slope.col(element).data(), rows, rows);
-    const Local<R, R> identity = Local<R, R>::Identity(rows, rows);
-    const Local<R, R> inverted = inverse<R>(d + shift * identity);
-    Eigen::Map<Local<R, R>> w(stiffness.col(element).data(), rows, rows);
-    w = inverted;
-    w -= inverted * d;
-    w = (0.5 * penalty * (w + w.transpose())).eval();
-    for (int i = 0; i < rows; ++i) {
-      double sum = 0;
-      for (int j = 0; j < rows; ++j)
-        sum += inverted(i, j) * (mismatch(j, element) + penalty * change * rate(j, element));
-      correction(i, element) = sum;
-    }
+    const Local<R, R> inverted = inverse_of<R>(d + shift * Local<R, R>::Identity(rows, rows));
+    Eigen::Map<Local<R, R>>(inverse.col(element).data(), rows, rows) = inverted;
+    Local<R, R> w = inverted;
+    w -= inverted.lazyProduct(d);
+    Eigen::Map<Local<R, R>>(stiffness.col(element).data(), rows, rows) = 0.5 * penalty * (w + w.transpose());
   }
   template <int R, int W>
-  void gradient(Index element, double weight, const double* lambda, const double* less, double* out) const {
+  void gradient(Index element, double weight, const double* lambda, double* out) const {
     const Eigen::Map<const Local<R, W>> j(jacobian.col(element).data(), rows, width);
-    Local<R, 1> force = Eigen::Map<const Local<R, 1>>(lambda, rows);
-    if (less) force -= Eigen::Map<const Local<R, 1>>(less, rows);
+    const Eigen::Map<const Local<R, 1>> force(lambda, rows);
     Eigen::Map<Local<W, 1>>(out, width) = weight * j.transpose().lazyProduct(force);
   }
   /// Adds J^T W J and multiplies by the weight.
@@ -199,18 +193,44 @@ EliminatedSlack::Mismatch EliminatedSlack::set_point(const Vector& x, double eps
   return out;
 }
 
-void EliminatedSlack::linearise(double target_epsilon, int threads) {
+void EliminatedSlack::linearise(int threads) {
   Path& path = *path_;
-  const double change = target_epsilon - path.epsilon;
   path.for_ranges(threads, [&](Index first, Index last) {
     for (Index element = first; element < last; ++element) {
       if (path.rows == 3) {
-        path.linearise<3>(element, penalty_, change);
+        path.linearise<3>(element, penalty_);
       } else {
-        path.linearise<-1>(element, penalty_, change);
+        path.linearise<-1>(element, penalty_);
       }
     }
   });
+}
+
+void EliminatedSlack::aim(double target_epsilon, int threads, Vector& gradient) {
+  Path& path = *path_;
+  const int rows = path.rows, width = path.width;
+  const double change = penalty_ * (target_epsilon - path.epsilon);
+  path.for_ranges(threads, [&](Index first, Index last) {
+    for (Index element = first; element < last; ++element) {
+      const double* inverse = path.inverse.col(element).data();
+      for (int i = 0; i < rows; ++i) {
+        double sum = 0;
+        for (int j = 0; j < rows; ++j)
+          sum += inverse[j * rows + i] * (path.mismatch(j, element) + change * path.rate(j, element));
+        path.correction(i, element) = sum;
+      }
+    }
+  });
+  for (Index element = 0; element < path.square.size(); ++element) {
+    const int* variables = stencils()[element];
+    const double* jacobian = path.jacobian.col(element).data();
+    const double weight = constraint_.weight(element);
+    for (int k = 0; k < width; ++k) {
+      double sum = 0;
+      for (int i = 0; i < rows; ++i) sum += jacobian[k * rows + i] * path.correction(i, element);
+      gradient[variables[k]] -= weight * sum;
+    }
+  }
 }
 
 double EliminatedSlack::evaluate_path(Index element, const double* x, double* gradient, double* hessian,
@@ -220,11 +240,10 @@ double EliminatedSlack::evaluate_path(Index element, const double* x, double* gr
   const bool triangle = path.rows == 3 && path.width == 9;
   const double weight = constraint_.weight(element);
   const double* lambda = multipliers_.data() + element * path.rows;
-  const double* less = linearisation_ == Linearisation::held ? nullptr : path.correction.col(element).data();
   if (triangle) {
-    path.gradient<3, 9>(element, weight, lambda, less, gradient);
+    path.gradient<3, 9>(element, weight, lambda, gradient);
   } else {
-    path.gradient<-1, -1>(element, weight, lambda, less, gradient);
+    path.gradient<-1, -1>(element, weight, lambda, gradient);
   }
   if (!hessian) return 0;
   constraint_.hessian(element, x, path.smoothed.col(element).data(), curvature, hessian);

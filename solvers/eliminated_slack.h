@@ -29,10 +29,10 @@ class EliminatedSlack final : public Energy {
   /// Adds w J^T (lambda+ - lambda) at x to `force`: how much the forces would change by an update now.
   void add_update_force(const Vector& x, Vector& force) const;
 
-  /// What evaluate() gives: the augmented Lagrangian above; or, of the central path (central_path.h) and at the point
-  /// last given to set_point() only: w J^T lambda (`held`: gradient, value 0), or what is left of
-  /// Newton's system for x and lambda after lambda is eliminated (`primal_dual`: gradient and matrix, value 0).
-  enum class Linearisation { augmented_lagrangian, held, primal_dual };
+  /// What evaluate() gives: the augmented Lagrangian above; or, on the central path (central_path.h) and at the point
+  /// last given to set_point(), the gradient w J^T lambda and the matrix that is left of Newton's system for x and
+  /// lambda after lambda is eliminated, with value 0.
+  enum class Linearisation { augmented_lagrangian, central_path };
   void set_linearisation(Linearisation linearisation) { linearisation_ = linearisation; }
   /// How far lambda is from lambda_s, divided by the penalty: the largest over the elements, and the weighted mean
   /// square.
@@ -42,8 +42,10 @@ class EliminatedSlack final : public Energy {
   /// Evaluates the smoothed conditions lambda = lambda_s(x, lambda) at x, with epsilon the square of the smoothing
   /// width in the constraint's units squared.
   Mismatch set_point(const Vector& x, double epsilon, int threads);
-  /// Linearises them there in x, lambda and epsilon, towards `target_epsilon`.
-  void linearise(double target_epsilon, int threads);
+  /// Linearises them there in x and lambda: without this evaluate() gives no matrix.
+  void linearise(int threads);
+  /// Aims the linearised system at `target_epsilon` and adds to `gradient` what that leaves on its right-hand side.
+  void aim(double target_epsilon, int threads, Vector& gradient);
   /// The change of lambda that belongs to the change dx of the linearised system.
   void multiplier_step(const Vector& dx, int threads, Vector& step) const;
 
@@ -64,7 +66,7 @@ class EliminatedSlack final : public Energy {
   Vector multipliers_;
   double penalty_ = 1;
   Linearisation linearisation_ = Linearisation::augmented_lagrangian;
-  std::unique_ptr<Path> path_;  ///< what set_point() and linearise() keep of every element
+  std::unique_ptr<Path> path_;  ///< what set_point(), linearise() and aim() keep of every element
 };
 
 }  // namespace taut

@@ -78,7 +78,9 @@ TEST_P(SlackOfEveryConstraint, PrimalDualStepReducesTheMismatchAtFirstOrderByIts
                multipliers = slack_.multipliers();
   const double before = slack_.set_point(x, epsilon, 1).mean_square, t = 1e-5;
   Vector step, shared;
-  slack_.linearise(target, 1);
+  slack_.linearise(1);
+  Vector unused = Vector::Zero(x.size());
+  slack_.aim(target, 1, unused);
   slack_.multiplier_step(dx, 1, step);
   slack_.multiplier_step(dx, 3, shared);
   EXPECT_EQ(step, shared);
@@ -94,36 +96,40 @@ TEST_P(SlackOfEveryConstraint, PrimalDualStepReducesTheMismatchAtFirstOrderByIts
 TEST_P(SlackOfEveryConstraint, PrimalDualSystemForecastsTheForceOfTheSteppedMultipliers) {
   slack_.set_penalty(20.0);
   slack_.set_multipliers(RandomValues(2).vector(rows_));
-  slack_.set_linearisation(EliminatedSlack::Linearisation::primal_dual);
+  slack_.set_linearisation(EliminatedSlack::Linearisation::central_path);
   const Vector x = posed(Pose::stretched), dx = RandomValues(3).vector(x.size());
   slack_.set_point(x, 0.01, 1);
-  slack_.linearise(0.004, 1);
-  Vector step;
+  slack_.linearise(1);
+  // The system's left-hand side at dx, less the curvature of c itself, is the sum of w J^T (lambda + dlambda).
+  Vector system = Vector::Zero(x.size()), forecast = Vector::Zero(x.size()), step;
+  slack_.aim(0.004, 1, system);
   slack_.multiplier_step(dx, 1, step);
   const Vector stepped = slack_.multipliers() + step;
   const int width = slack_.stencils().width(), rows = constraint_->rows();
-  Vector local(width), local_dx(width), gradient(width), c(rows);
-  Matrix exact(width, width), semidefinite(width, width), jacobian(rows, width);
+  Vector local(width), local_dx(width), gradient(width), c(rows), nearest(rows), rate(rows);
+  Matrix exact(width, width), semidefinite(width, width), jacobian(rows, width), curvature(width, width),
+      slope(rows, rows);
   for (Index element = 0; element < slack_.stencils().count(); ++element) {
     slack_.stencils().gather(element, x, local.data());
     slack_.stencils().gather(element, dx, local_dx.data());
     constraint_->evaluate(element, local.data(), c.data(), jacobian.data());
     slack_.evaluate(element, local.data(), gradient.data(), exact.data(), Curvature::exact);
     slack_.evaluate(element, local.data(), gradient.data(), semidefinite.data(), Curvature::positive_semidefinite);
-    // Less the curvature of c itself, the system is w J^T (lambda + dlambda).
-    Matrix curvature(width, width);
-    const Vector held = exact * local_dx + gradient;
-    const Vector forecast = constraint_->weight(element) * jacobian.transpose() * stepped.segment(element * rows, rows);
-    Vector smoothed(rows), nearest(rows), rate(rows),
-        y = c + slack_.multipliers().segment(element * rows, rows) / slack_.penalty();
-    Matrix slope(rows, rows);
+    const Vector y = c + slack_.multipliers().segment(element * rows, rows) / slack_.penalty();
     constraint_->set().project_smoothed(element, y.data(), 0.01, nearest.data(), slope.data(), rate.data());
-    smoothed = slack_.penalty() * (y - nearest);
+    const Vector smoothed = slack_.penalty() * (y - nearest);
+    const double weight = constraint_->weight(element);
     constraint_->hessian(element, local.data(), smoothed.data(), Curvature::exact, curvature.data());
-    EXPECT_LE((held - constraint_->weight(element) * curvature * local_dx - forecast).norm(),
-              1e-9 * (forecast.norm() + held.norm()));
+    const Vector held = exact * local_dx + gradient - weight * curvature * local_dx;
+    const Vector force = weight * jacobian.transpose() * stepped.segment(element * rows, rows);
+    for (int i = 0; i < width; ++i) {
+      system[slack_.stencils()[element][i]] += held[i];
+      forecast[slack_.stencils()[element][i]] += force[i];
+    }
     EXPECT_GE(Eigen::SelfAdjointEigenSolver<Matrix>(semidefinite).eigenvalues()[0], -1e-10 * semidefinite.norm());
   }
+  EXPECT_GT(forecast.norm(), 0);
+  EXPECT_LE((system - forecast).norm(), 1e-9 * (forecast.norm() + step.norm()));
 }
 
 INSTANTIATE_TEST_SUITE_P(, SlackOfEveryConstraint, testing::ValuesIn(constraint_specimens()),
