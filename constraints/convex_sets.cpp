@@ -20,6 +20,7 @@ void check_bounds(const char* owner, double lower, double upper) {
 
 /// The smoothed projection of a number onto [lower, upper]: how far z moves down, the slope of the projection, and the
 /// derivative of the correction in epsilon.
+constexpr double smallest_slope = 1e-8;
 struct Smoothed {
   double correction = 0, slope = 1, rate = 0;
 };
@@ -38,7 +39,7 @@ Smoothed smoothed(double z, double lower, double upper, double epsilon) {
   };
   if (std::isfinite(upper)) add(z - upper, 1.0);
   if (std::isfinite(lower)) add(lower - z, -1.0);
-  out.slope = std::max(out.slope, 1e-15);
+  out.slope = std::max(out.slope, smallest_slope);
   return out;
 }
 
@@ -57,13 +58,13 @@ void Box::project(Index /*element*/, const double* z, double* nearest, double* d
   }
 }
 
-void Box::project_smoothed(Index /*element*/, const double* z, double epsilon, double* nearest, double* derivative,
+void Box::project_smoothed(Index /*element*/, const double* z, double epsilon, double* nearest, double* inverse,
                            double* rate) const {
-  std::fill_n(derivative, dimension_ * dimension_, 0.0);
+  std::fill_n(inverse, dimension_ * dimension_, 0.0);
   for (int i = 0; i < dimension_; ++i) {
     const Smoothed s = smoothed(z[i], lower_, upper_, epsilon);
     nearest[i] = z[i] - s.correction;
-    derivative[i * dimension_ + i] = s.slope;
+    inverse[i * dimension_ + i] = 1 / s.slope;
     rate[i] = -s.rate;
   }
 }
@@ -96,7 +97,7 @@ void SpectralBox::project(Index /*element*/, const double* z, double* nearest, d
 }
 
 void SpectralBox::project_smoothed(Index /*element*/, const double* z, double epsilon, double* nearest,
-                                   double* derivative, double* rate) const {
+                                   double* inverse, double* rate) const {
   constexpr double root2 = std::numbers::sqrt2;
   const Eigen2 pair = eigen2(z[0], z[1] / root2, z[2]);
   const double y1 = pair.values[0], y2 = pair.values[1], gap = y1 - y2;
@@ -106,12 +107,12 @@ void SpectralBox::project_smoothed(Index /*element*/, const double* z, double ep
       e12(-root2 * c * s, c * c - s * s, root2 * c * s);
   double omega = 0.5 * (s1.slope + s2.slope);
   if (gap > 1e-7 * (std::abs(y1) + std::abs(y2))) {
-    omega = std::max(1 - (s1.correction - s2.correction) / gap, std::min(s1.slope, s2.slope));
+    omega = std::clamp(1 - (s1.correction - s2.correction) / gap, std::min(s1.slope, s2.slope), 1.0);
   }
   Eigen::Map<Vector3>{nearest} = Eigen::Map<const Vector3>(z) - s1.correction * e1 - s2.correction * e2;
   Eigen::Map<Vector3>{rate} = -s1.rate * e1 - s2.rate * e2;
-  Eigen::Map<Matrix3>{derivative} =
-      s1.slope * e1 * e1.transpose() + s2.slope * e2 * e2.transpose() + omega * e12 * e12.transpose();
+  const Vector3 f1 = e1 / s1.slope, f2 = e2 / s2.slope, f12 = e12 / omega;
+  Eigen::Map<Matrix3>{inverse} = f1 * e1.transpose() + f2 * e2.transpose() + f12 * e12.transpose();
 }
 
 }  // namespace taut

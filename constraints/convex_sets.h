@@ -11,7 +11,7 @@ class Box final : public ConvexSet {
   Box(int dimension, double lower, double upper);
   int dimension() const override { return dimension_; }
   void project(Index element, const double* z, double* nearest, double* derivative) const override;
-  void project_smoothed(Index element, const double* z, double epsilon, double* nearest, double* derivative,
+  void project_smoothed(Index element, const double* z, double epsilon, double* nearest, double* inverse,
                         double* rate) const override;
 
  private:
@@ -27,7 +27,7 @@ class SpectralBox final : public ConvexSet {
   SpectralBox(double lower, double upper);
   int dimension() const override { return 3; }
   void project(Index element, const double* z, double* nearest, double* derivative) const override;
-  void project_smoothed(Index element, const double* z, double epsilon, double* nearest, double* derivative,
+  void project_smoothed(Index element, const double* z, double epsilon, double* nearest, double* inverse,
                         double* rate) const override;
 
  private:

@@ -74,23 +74,14 @@ void MatrixStrainLimit::evaluate(Index element, const double* x, double* c, doub
 void MatrixStrainLimit::hessian(Index element, const double* /*x*/, const double* multipliers, Curvature curvature,
                                 double* hessian) const {
   const TriangleShape& shape = limit_.triangles[element].shape;
-  double a = multipliers[0], b = multipliers[1] / std::numbers::sqrt2, c = multipliers[2];
-  if (curvature == Curvature::positive_semidefinite) {
-    const Eigen2 pair = eigen2(a, b, c);
-    const double high = std::max(pair.values[0], 0.0), low = std::max(pair.values[1], 0.0);
-    const double x = pair.vectors(0, 0), y = pair.vectors(1, 0);
-    a = high * x * x + low * y * y;
-    b = (high - low) * x * y;
-    c = high * y * y + low * x * x;
-  }
+  Matrix2 tension;
+  tension << multipliers[0], multipliers[1] / std::numbers::sqrt2, multipliers[1] / std::numbers::sqrt2, multipliers[2];
+  if (curvature == Curvature::positive_semidefinite) tension = positive_part(tension);
   Eigen::Map<Matrix9> h(hessian);
   h.setZero();
   for (int j = 0; j < 3; ++j) {
-    for (int k = 0; k < 3; ++k) {
-      const double entry =
-          2 * (shape(j, 0) * (a * shape(k, 0) + b * shape(k, 1)) + shape(j, 1) * (b * shape(k, 0) + c * shape(k, 1)));
-      for (int axis = 0; axis < 3; ++axis) h(3 * j + axis, 3 * k + axis) = entry;
-    }
+    const Vector2 pulled = 2 * tension * shape.row(j).transpose();
+    for (int k = 0; k < 3; ++k) h.block<3, 3>(3 * j, 3 * k).diagonal().setConstant(shape.row(k).dot(pulled));
   }
 }
 

@@ -132,7 +132,6 @@ class CentralPath {
     ++counts_.function_evaluations;
     set_point(x);
     if (with_matrix) {
-      for (EliminatedSlack& slack : slacks_) slack.linearise(threads_);
       assembly_.hessian(x, Curvature::positive_semidefinite, &gradient_);
     } else {
       assembly_.gradient(x, gradient_);

@@ -1,6 +1,5 @@
 #include "solvers/eliminated_slack.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -84,8 +83,7 @@ double EliminatedSlack::evaluate(Index element, const double* x, double* gradien
 
 /// The smoothed conditions F = lambda - lambda_s = 0, lambda_s = mu (y - P_s(y, epsilon)), y = c + lambda/mu, of all
 /// elements. With D = dP_s/dy, Newton's equation towards epsilon + depsilon, D dlambda = mu (I - D) J dx - F - mu
-/// dP_s/depsilon depsilon, eliminates dlambda = W J dx - r, W = mu D^{-1} (I - D). D is kept from singularity by a
-/// shift that caps W at 1e8 mu.
+/// dP_s/depsilon depsilon, eliminates dlambda = W J dx - r, W = mu (D^{-1} - I).
 struct EliminatedSlack::Path {
   int rows, width;
   double epsilon = 0;
@@ -94,9 +92,7 @@ struct EliminatedSlack::Path {
   Matrix mismatch;    // F
   Matrix rate;        // dP_s/depsilon
   Matrix jacobian;    // J, rows x width
-  Matrix slope;       // D, rows x rows
   Matrix inverse;     // D^{-1}, rows x rows
-  Matrix stiffness;   // W, rows x rows
   Matrix correction;  // r
   Vector square;      // |F|^2/mu^2
 
@@ -107,9 +103,7 @@ struct EliminatedSlack::Path {
         mismatch(r, count),
         rate(r, count),
         jacobian(r * w, count),
-        slope(r * r, count),
         inverse(r * r, count),
-        stiffness(r * r, count),
         correction(r, count),
         square(count) {}
 
@@ -117,23 +111,6 @@ struct EliminatedSlack::Path {
   template <int R, int W>
   using Local = Eigen::Matrix < double,
         R < 0 ? Eigen::Dynamic : R, W < 0 ? Eigen::Dynamic : W, 0, R < 0 ? max_rows : R, W<0 ? max_stencil_width : W>;
-  template <int R>
-  static Local<R, R> inverse_of(const Local<R, R>& matrix) {
-    if constexpr (R == 3) return matrix.inverse();
-    if (matrix.rows() == 1) return Local<R, R>::Constant(1, 1, 1 / matrix(0, 0));
-    return matrix.ldlt().solve(Local<R, R>::Identity(matrix.rows(), matrix.rows()));
-  }
-
-  template <int R>
-  void linearise(Index element, double penalty) {
-    constexpr double shift = 1e-8;
-    const Eigen::Map<const Local<R, R>> d(slope.col(element).data(), rows, rows);
-    const Local<R, R> inverted = inverse_of<R>(d + shift * Local<R, R>::Identity(rows, rows));
-    Eigen::Map<Local<R, R>>(inverse.col(element).data(), rows, rows) = inverted;
-    Local<R, R> w = inverted;
-    w -= inverted.lazyProduct(d);
-    Eigen::Map<Local<R, R>>(stiffness.col(element).data(), rows, rows) = 0.5 * penalty * (w + w.transpose());
-  }
   template <int R, int W>
   void gradient(Index element, double weight, const double* lambda, double* out) const {
     const Eigen::Map<const Local<R, W>> j(jacobian.col(element).data(), rows, width);
@@ -142,9 +119,10 @@ struct EliminatedSlack::Path {
   }
   /// Adds J^T W J and multiplies by the weight.
   template <int R, int W>
-  void hessian(Index element, double weight, double* out) const {
+  void hessian(Index element, double weight, double penalty, double* out) const {
     const Eigen::Map<const Local<R, W>> j(jacobian.col(element).data(), rows, width);
-    const Eigen::Map<const Local<R, R>> w(stiffness.col(element).data(), rows, rows);
+    const Eigen::Map<const Local<R, R>> d_inverse(inverse.col(element).data(), rows, rows);
+    const Local<R, R> w = penalty * (d_inverse - Local<R, R>::Identity(rows, rows));
     const Local<R, W> stiff = w.lazyProduct(j);
     Eigen::Map<Local<W, W>> h(out, width, width);
     for (int k = 0; k < width; ++k) h.col(k) = weight * (h.col(k) + j.transpose().lazyProduct(stiff.col(k)));
@@ -170,7 +148,7 @@ EliminatedSlack::Mismatch EliminatedSlack::set_point(const Vector& x, double eps
       constraint_.evaluate(element, local.data(), c.data(), path.jacobian.col(element).data());
       const double* lambda = multipliers_.data() + element * rows;
       for (int i = 0; i < rows; ++i) y[i] = c[i] + lambda[i] / penalty_;
-      constraint_.set().project_smoothed(element, y.data(), epsilon, nearest.data(), path.slope.col(element).data(),
+      constraint_.set().project_smoothed(element, y.data(), epsilon, nearest.data(), path.inverse.col(element).data(),
                                          path.rate.col(element).data());
       double square = 0;
       for (int i = 0; i < rows; ++i) {
@@ -191,19 +169,6 @@ EliminatedSlack::Mismatch EliminatedSlack::set_point(const Vector& x, double eps
   out.max = std::sqrt(out.max);
   if (weights > 0) out.mean_square /= weights;
   return out;
-}
-
-void EliminatedSlack::linearise(int threads) {
-  Path& path = *path_;
-  path.for_ranges(threads, [&](Index first, Index last) {
-    for (Index element = first; element < last; ++element) {
-      if (path.rows == 3) {
-        path.linearise<3>(element, penalty_);
-      } else {
-        path.linearise<-1>(element, penalty_);
-      }
-    }
-  });
 }
 
 void EliminatedSlack::aim(double target_epsilon, int threads, Vector& gradient) {
@@ -248,9 +213,9 @@ double EliminatedSlack::evaluate_path(Index element, const double* x, double* gr
   if (!hessian) return 0;
   constraint_.hessian(element, x, path.smoothed.col(element).data(), curvature, hessian);
   if (triangle) {
-    path.hessian<3, 9>(element, weight, hessian);
+    path.hessian<3, 9>(element, weight, penalty_, hessian);
   } else {
-    path.hessian<-1, -1>(element, weight, hessian);
+    path.hessian<-1, -1>(element, weight, penalty_, hessian);
   }
   return 0;
 }
@@ -269,11 +234,11 @@ void EliminatedSlack::multiplier_step(const Vector& dx, int threads, Vector& ste
         change[i] = 0;
         for (int k = 0; k < width; ++k) change[i] += jacobian[k * rows + i] * moved[k];
       }
-      const double* stiffness = path.stiffness.col(element).data();
+      const double* inverse = path.inverse.col(element).data();
       for (int i = 0; i < rows; ++i) {
-        double sum = -path.correction(i, element);
-        for (int j = 0; j < rows; ++j) sum += stiffness[j * rows + i] * change[j];
-        step[element * rows + i] = sum;
+        double sum = -change[i];
+        for (int j = 0; j < rows; ++j) sum += inverse[j * rows + i] * change[j];
+        step[element * rows + i] = penalty_ * sum - path.correction(i, element);
       }
     }
   });

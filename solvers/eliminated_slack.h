@@ -42,9 +42,7 @@ class EliminatedSlack final : public Energy {
   /// Evaluates the smoothed conditions lambda = lambda_s(x, lambda) at x, with epsilon the square of the smoothing
   /// width in the constraint's units squared.
   Mismatch set_point(const Vector& x, double epsilon, int threads);
-  /// Linearises them there in x and lambda: without this evaluate() gives no matrix.
-  void linearise(int threads);
-  /// Aims the linearised system at `target_epsilon` and adds to `gradient` what that leaves on its right-hand side.
+  /// Aims the system linearised there at `target_epsilon` and adds to `gradient` what that leaves on its right-hand side.
   void aim(double target_epsilon, int threads, Vector& gradient);
   /// The change of lambda that belongs to the change dx of the linearised system.
   void multiplier_step(const Vector& dx, int threads, Vector& step) const;
@@ -66,7 +64,7 @@ class EliminatedSlack final : public Energy {
   Vector multipliers_;
   double penalty_ = 1;
   Linearisation linearisation_ = Linearisation::augmented_lagrangian;
-  std::unique_ptr<Path> path_;  ///< what set_point(), linearise() and aim() keep of every element
+  std::unique_ptr<Path> path_;  ///< what set_point() and aim() keep of every element
 };
 
 }  // namespace taut

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "geometry/collapse.h"
+#include "linalg/symmetric2.h"
 
 namespace taut {
 
@@ -25,6 +26,8 @@ double Membrane::evaluate(Index element, const double* x, double* gradient, doub
                                    : evaluate_neo_hookean(triangle, x, gradient, hessian, curvature);
 }
 
+/// With h_j = F b_j, b_j the rows of the shape matrix, node blocks are mu ((b_j.b_k) F F^T + h_k h_j^T) + lambda h_j
+/// h_k^T + (b_j.S b_k) I. All but the last are positive semidefinite together, and the last is where S is.
 double Membrane::evaluate_stvk(const RestTriangle& triangle, const double* x, double* gradient, double* hessian,
                                Curvature curvature) const {
   const Matrix32 f = triangle.deformation_gradient(x);
@@ -34,32 +37,29 @@ double Membrane::evaluate_stvk(const RestTriangle& triangle, const double* x, do
   const double trace = e11 + e22;
   const double value =
       weight * (lame_.mu * (e11 * e11 + e22 * e22 + 2 * e12 * e12) + 0.5 * lame_.lambda * trace * trace);
-  if (gradient) {
-    // First Piola-Kirchhoff stress P = F S with S = 2 mu E + lambda tr(E) I.
-    const double s11 = 2 * lame_.mu * e11 + lame_.lambda * trace, s22 = 2 * lame_.mu * e22 + lame_.lambda * trace,
-                 s12 = 2 * lame_.mu * e12;
-    Matrix32 p;
-    p.col(0) = weight * (s11 * f.col(0) + s12 * f.col(1));
-    p.col(1) = weight * (s12 * f.col(0) + s22 * f.col(1));
-    Eigen::Map<Matrix3>(gradient).noalias() = p * triangle.shape.transpose();
-  }
-  if (hessian) {
-    const Svd32 s = svd(f);
-    const double g1 = 0.5 * (s.d1 * s.d1 - 1), g2 = 0.5 * (s.d2 * s.d2 - 1);
-    const double t1 = 2 * lame_.mu * g1 + lame_.lambda * (g1 + g2),
-                 t2 = 2 * lame_.mu * g2 + lame_.lambda * (g1 + g2);  // principal S
-    const double stiff = 2 * lame_.mu + lame_.lambda;
-    IsotropicDerivatives d;
-    d.p1 = s.d1 * t1;
-    d.p2 = s.d2 * t2;
-    d.p11 = t1 + s.d1 * s.d1 * stiff;
-    d.p22 = t2 + s.d2 * s.d2 * stiff;
-    d.p12 = lame_.lambda * s.d1 * s.d2;
-    d.flip = t1 + lame_.mu * s.d2 * (s.d1 + s.d2);
-    d.twist = t1 - lame_.mu * s.d2 * (s.d1 - s.d2);
-    d.out1 = t1;
-    d.out2 = t2;
-    isotropic_hessian(s, triangle.shape, d, weight, curvature, hessian);
+  if (!gradient) return value;
+  // First Piola-Kirchhoff stress P = F S with S = 2 mu E + lambda tr(E) I.
+  Matrix2 s;
+  s(0, 0) = weight * (2 * lame_.mu * e11 + lame_.lambda * trace);
+  s(1, 1) = weight * (2 * lame_.mu * e22 + lame_.lambda * trace);
+  s(0, 1) = s(1, 0) = weight * 2 * lame_.mu * e12;
+  const Matrix32 p = f * s;
+  Eigen::Map<Matrix3>(gradient).noalias() = p * triangle.shape.transpose();
+  if (!hessian) return value;
+  if (curvature == Curvature::positive_semidefinite) s = positive_part(s);
+  const Matrix3 square = (weight * lame_.mu) * (f * f.transpose()), h = f * triangle.shape.transpose();
+  const double mu = weight * lame_.mu, lambda = weight * lame_.lambda;
+  Eigen::Map<Eigen::Matrix<double, 9, 9>> out(hessian);
+  for (int j = 0; j < 3; ++j) {
+    const Vector2 b = triangle.shape.row(j), sb = s * b;
+    for (int k = 0; k <= j; ++k) {
+      const Vector2 other = triangle.shape.row(k);
+      const Vector3 left = mu * h.col(k), right = lambda * h.col(j);
+      Matrix3 block = b.dot(other) * square + left * h.col(j).transpose() + right * h.col(k).transpose();
+      block.diagonal().array() += sb.dot(other);
+      out.block<3, 3>(3 * j, 3 * k) = block;
+      if (k < j) out.block<3, 3>(3 * k, 3 * j) = block.transpose();
+    }
   }
   return value;
 }

@@ -5,20 +5,6 @@
 #include "linalg/symmetric2.h"
 
 namespace taut {
-namespace {
-
-/// Replaces the symmetric block [a b; b c] by its positive semidefinite part.
-void clamp_block(double& a, double& b, double& c) {
-  const Eigen2 pair = eigen2(a, b, c);
-  if (pair.values[1] >= 0) return;
-  const double high = std::max(pair.values[0], 0.0);
-  const double x = pair.vectors(0, 0), y = pair.vectors(1, 0);
-  a = high * x * x;
-  b = high * x * y;
-  c = high * y * y;
-}
-
-}  // namespace
 
 void isotropic_gradient(const Svd32& svd, const TriangleShape& shape, double p1, double p2, double weight,
                         double* gradient) {
@@ -30,7 +16,12 @@ void isotropic_gradient(const Svd32& svd, const TriangleShape& shape, double p1,
 void isotropic_hessian(const Svd32& svd, const TriangleShape& shape, IsotropicDerivatives d, double weight,
                        Curvature curvature, double* hessian) {
   if (curvature == Curvature::positive_semidefinite) {
-    clamp_block(d.p11, d.p12, d.p22);
+    Matrix2 stretch;
+    stretch << d.p11, d.p12, d.p12, d.p22;
+    stretch = positive_part(stretch);
+    d.p11 = stretch(0, 0);
+    d.p12 = stretch(0, 1);
+    d.p22 = stretch(1, 1);
     d.flip = std::max(d.flip, 0.0);
     d.twist = std::max(d.twist, 0.0);
     d.out1 = std::max(d.out1, 0.0);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/types.h"
@@ -35,6 +36,14 @@ inline Eigen2 eigen2(double a, double b, double c) {
   }
   pair.vectors << x, -y, y, x;
   return pair;
+}
+
+/// The nearest positive semidefinite matrix to the symmetric `m`: its eigenvalues below zero become zero.
+inline Matrix2 positive_part(const Matrix2& m) {
+  const Eigen2 pair = eigen2(m(0, 0), m(0, 1), m(1, 1));
+  if (pair.values[1] >= 0) return m;
+  const double high = std::max(pair.values[0], 0.0);
+  return high * pair.vectors.col(0) * pair.vectors.col(0).transpose();
 }
 
 }  // namespace taut

@@ -110,7 +110,6 @@ void strain_limit(benchmark::State& state, Linearisation linearisation, Wanted w
   PosedStep step(kernel_cells);
   EliminatedSlack& slack = step.slacks.front();
   slack.set_point(step.x, epsilon, 1);
-  slack.linearise(1);
   slack.set_linearisation(linearisation);
   evaluate_all(state, slack, step.x, wanted);
 }
@@ -126,20 +125,10 @@ void strain_limit_path_point(benchmark::State& state) {
 }
 BENCHMARK(strain_limit_path_point);
 
-void strain_limit_path_linearise(benchmark::State& state) {
-  PosedStep step(kernel_cells);
-  EliminatedSlack& slack = step.slacks.front();
-  slack.set_point(step.x, epsilon, 1);
-  for (auto _ : state) slack.linearise(1);
-  count_elements(state, step.triangles());
-}
-BENCHMARK(strain_limit_path_linearise);
-
 void strain_limit_path_aim(benchmark::State& state) {
   PosedStep step(kernel_cells);
   EliminatedSlack& slack = step.slacks.front();
   slack.set_point(step.x, epsilon, 1);
-  slack.linearise(1);
   Vector gradient = Vector::Zero(step.x.size());
   for (auto _ : state) slack.aim(epsilon, 1, gradient);
   count_elements(state, step.triangles());
@@ -150,7 +139,6 @@ void strain_limit_path_multiplier_step(benchmark::State& state) {
   PosedStep step(kernel_cells);
   EliminatedSlack& slack = step.slacks.front();
   slack.set_point(step.x, epsilon, 1);
-  slack.linearise(1);
   Vector gradient = Vector::Zero(step.x.size());
   slack.aim(epsilon, 1, gradient);
   const Vector dx = step.x - step.model->positions;
@@ -218,7 +206,6 @@ void assembly_hessian(benchmark::State& state, Linearisation linearisation) {
   for (EliminatedSlack& slack : step.slacks) {
     slack.set_linearisation(linearisation);
     slack.set_point(step.x, epsilon, 1);
-    slack.linearise(1);
   }
   Assembly assembly = assembly_of(step, static_cast<int>(state.range(1)));
   Vector gradient;

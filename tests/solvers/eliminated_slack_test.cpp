@@ -78,7 +78,6 @@ TEST_P(SlackOfEveryConstraint, PrimalDualStepReducesTheMismatchAtFirstOrderByIts
                multipliers = slack_.multipliers();
   const double before = slack_.set_point(x, epsilon, 1).mean_square, t = 1e-5;
   Vector step, shared;
-  slack_.linearise(1);
   Vector unused = Vector::Zero(x.size());
   slack_.aim(target, 1, unused);
   slack_.multiplier_step(dx, 1, step);
@@ -99,7 +98,6 @@ TEST_P(SlackOfEveryConstraint, PrimalDualSystemForecastsTheForceOfTheSteppedMult
   slack_.set_linearisation(EliminatedSlack::Linearisation::central_path);
   const Vector x = posed(Pose::stretched), dx = RandomValues(3).vector(x.size());
   slack_.set_point(x, 0.01, 1);
-  slack_.linearise(1);
   // The system's left-hand side at dx, less the curvature of c itself, is the sum of w J^T (lambda + dlambda).
   Vector system = Vector::Zero(x.size()), forecast = Vector::Zero(x.size()), step;
   slack_.aim(0.004, 1, system);
@@ -108,7 +106,7 @@ TEST_P(SlackOfEveryConstraint, PrimalDualSystemForecastsTheForceOfTheSteppedMult
   const int width = slack_.stencils().width(), rows = constraint_->rows();
   Vector local(width), local_dx(width), gradient(width), c(rows), nearest(rows), rate(rows);
   Matrix exact(width, width), semidefinite(width, width), jacobian(rows, width), curvature(width, width),
-      slope(rows, rows);
+      inverse(rows, rows);
   for (Index element = 0; element < slack_.stencils().count(); ++element) {
     slack_.stencils().gather(element, x, local.data());
     slack_.stencils().gather(element, dx, local_dx.data());
@@ -116,7 +114,7 @@ TEST_P(SlackOfEveryConstraint, PrimalDualSystemForecastsTheForceOfTheSteppedMult
     slack_.evaluate(element, local.data(), gradient.data(), exact.data(), Curvature::exact);
     slack_.evaluate(element, local.data(), gradient.data(), semidefinite.data(), Curvature::positive_semidefinite);
     const Vector y = c + slack_.multipliers().segment(element * rows, rows) / slack_.penalty();
-    constraint_->set().project_smoothed(element, y.data(), 0.01, nearest.data(), slope.data(), rate.data());
+    constraint_->set().project_smoothed(element, y.data(), 0.01, nearest.data(), inverse.data(), rate.data());
     const Vector smoothed = slack_.penalty() * (y - nearest);
     const double weight = constraint_->weight(element);
     constraint_->hessian(element, local.data(), smoothed.data(), Curvature::exact, curvature.data());
