@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/problem_argument.h"
 #include "cli/progress.h"
 #include "problems/read_scene.h"
 #include "report/terminal_summary.h"
@@ -46,29 +47,6 @@ void install_signal_handlers() {
   ::sigaction(SIGTERM, &action, nullptr);
 }
 
-/// A file, or else the name of a problem in the catalogue.
-fs::path find_problem(const std::string& problem) {
-  std::error_code error;
-  if (fs::is_regular_file(problem, error)) return problem;
-  const bool is_name = problem.find_first_of("/.") == problem.npos;
-  const fs::path listed = catalogue_folder() / (problem + ".json");
-  if (is_name && fs::is_regular_file(listed, error)) return listed;
-  throw UsageError(
-      problem + (is_name ? ": no such file, and no problem of the catalogue (taut list problems)" : ": no such file"));
-}
-
-Overrides overrides_of(const SolveArguments& arguments) {
-  Overrides overrides;
-  for (const std::string& setting : arguments.settings) {
-    const std::size_t equals = setting.find('=');
-    if (equals == setting.npos || equals == 0)
-      throw UsageError("--set " + setting + ": expected KEY=VALUE, as in time.steps=10");
-    overrides.emplace_back(setting.substr(0, equals), setting.substr(equals + 1));
-  }
-  if (!arguments.format.empty()) overrides.emplace_back("output.format", arguments.format);
-  return overrides;
-}
-
 std::string progress_note(const StepRecord& record) {
   if (record.status != Status::solved) return fmt::format("step {}: {}", record.step, to_string(record.status));
   return fmt::format("{} Newton systems, residual {:.0e}", record.counts.linear_solves, record.residuals.stationarity);
@@ -83,7 +61,9 @@ int solve(const SolveArguments& arguments) {
   if (arguments.resume && arguments.out.empty())
     throw UsageError("--resume needs --out DIR, the directory of the run to go on with");
   install_signal_handlers();
-  const Scene scene = read_scene(find_problem(arguments.problem), overrides_of(arguments));
+  Overrides overrides = parse_settings(arguments.settings);
+  if (!arguments.format.empty()) overrides.emplace_back("output.format", arguments.format);
+  const Scene scene = read_scene(find_problem(arguments.problem), overrides);
 
   std::unique_ptr<Progress> progress;
   RunOptions options;

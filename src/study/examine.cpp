@@ -45,6 +45,26 @@ Penetration penetration_of(const SphereObstacle& sphere, const std::vector<Trian
 
 }  // namespace
 
+std::string pins_name(const Model& model) {
+  for (const auto& constraint : model.constraints) {
+    if (constraint->name() == "pins") return "pins (held vertices)";
+  }
+  return "pins";
+}
+
+Residuals named_residuals(const Model& model, const Problem& problem, const Result& result) {
+  Residuals named = residuals(problem, result);
+  constexpr std::string_view prefix = "vertex ";
+  if (named.worst_node.starts_with(prefix)) {
+    named.worst_node = vertex_name(model, std::stol(named.worst_node.substr(prefix.size())));
+  }
+  if (problem.fixed_variables.empty()) return named;
+  Violation& pins = named.violations.back();
+  pins.constraint = pins_name(model);
+  if (pins.element >= 0) pins.where = vertex_name(model, pins.element);
+  return named;
+}
+
 double objective(const Problem& problem, const Vector& x) {
   std::array<double, max_stencil_width> local;
   double sum = 0;
@@ -96,6 +116,15 @@ std::string vertex_name(const Model& model, Index vertex) {
     }
   }
   return "vertex " + std::to_string(vertex);
+}
+
+std::string triangle_name(const Model& model, Index triangle) {
+  for (const BodyRange& body : model.bodies) {
+    if (triangle >= body.first_triangle && triangle < body.first_triangle + body.triangles) {
+      return "triangle " + std::to_string(triangle - body.first_triangle) + " of " + body.name;
+    }
+  }
+  return "triangle " + std::to_string(triangle);
 }
 
 }  // namespace taut

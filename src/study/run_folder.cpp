@@ -58,6 +58,27 @@ State to_state(int step, const Arrays& arrays) {
   }
 }
 
+/// The state before the last step. Its positions and velocities are the previous ones of `state`.
+void add_before(const State& before, Arrays& arrays) {
+  arrays["before accelerations"] = array(before.accelerations);
+  arrays["before previous_positions"] = array(before.previous_positions);
+  arrays["before previous_velocities"] = array(before.previous_velocities);
+  arrays["before auxiliary_accelerations"] = array(before.auxiliary_accelerations);
+}
+
+std::optional<State> to_before(const State& state, const Arrays& arrays) {
+  if (state.step == 0 || !arrays.contains("before accelerations")) return {};
+  const auto read = [&arrays](const char* name) { return vector(arrays.at(name)); };
+  return State{state.step - 1,
+               state.previous_positions,
+               state.previous_velocities,
+               read("before accelerations"),
+               read("before previous_positions"),
+               read("before previous_velocities"),
+               read("before auxiliary_accelerations"),
+               {}};
+}
+
 bool is_empty_or_missing(const fs::path& folder) {
   std::error_code error;
   const bool empty = fs::is_empty(folder, error);
@@ -114,6 +135,7 @@ std::optional<Continuation> RunFolder::continuation(const Scene& scene, int thre
   }
   from.state = to_state(static_cast<int>(checkpoint.step), checkpoint.arrays);
   from.summary = parse_summary(checkpoint.texts.at("summary"));
+  from.before = to_before(from.state, checkpoint.arrays);
   return from;
 } catch (const RunRefused&) {
   throw;
@@ -149,6 +171,7 @@ void RunFolder::write_checkpoint(const std::string& input_hash, const Continuati
 
 void RunFolder::replace_checkpoint(const std::string& input_hash, const Continuation& now) const {
   Checkpoint checkpoint{input_hash, now.state.step, to_arrays(now.state), {}};
+  if (now.before) add_before(*now.before, checkpoint.arrays);
   checkpoint.texts["finished"] = now.finished ? "yes" : "no";
   checkpoint.texts["threads"] = std::to_string(now.threads);
   checkpoint.texts["summary"] = summary_text(now.summary);
