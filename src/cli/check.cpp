@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/arguments.h"
 #include "cli/commands.h"
-#include "cli/problem_argument.h"
 #include "files/atomic_file.h"
 #include "report/check_report.h"
 
@@ -24,6 +24,7 @@ struct CheckArguments {
   std::string subject, csv, out;
   std::vector<std::string> frames, settings;
   std::optional<double> tolerance, step, first_time;
+  double largest_fold = FrameOptions{}.largest_fold;
   bool json = false, quiet = false;
 };
 
@@ -32,7 +33,8 @@ CheckReport frames_report(const CheckArguments& arguments) {
   const bool is_run = fs::is_directory(arguments.subject, error);
   const fs::path problem = is_run ? fs::path(arguments.subject) / "problem.json" : find_problem(arguments.subject);
   const Scene scene = read_scene(problem, parse_settings(arguments.settings));
-  return check_frames(scene, {arguments.frames, arguments.step, arguments.first_time, arguments.tolerance});
+  return check_frames(
+      scene, {arguments.frames, arguments.step, arguments.first_time, arguments.tolerance, arguments.largest_fold});
 }
 
 CheckReport run_report(const CheckArguments& arguments) try {
@@ -58,7 +60,10 @@ int check(const CheckArguments& arguments) {
   if (!arguments.csv.empty()) write_atomically(arguments.csv, check_csv(report));
   const std::string text = arguments.json ? check_json(report) : arguments.quiet ? "" : check_table(report);
   const bool printed = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
-  for (const std::string& problem : report.unusable) fmt::print(stderr, "taut: {}\n", problem);
+  if (!report.unusable.empty()) {
+    const std::size_t others = report.unusable.size() - 1;
+    fmt::print(stderr, "taut: {}{}\n", report.unusable[0], others > 0 ? fmt::format("; and {} more", others) : "");
+  }
   if (!printed) return exit_internal_error;
   if (report.verdict() == CheckVerdict::unusable) return exit_bad_input;
   return report.verdict() == CheckVerdict::within ? exit_solved : exit_not_solved;
@@ -127,6 +132,11 @@ void add_check(CLI::App& program, int& code) {
       ->type_name("S")
       ->check(number("", [](double) { return true; }));
   command
+      ->add_option("--max-fold", arguments->largest_fold,
+                   "Degrees from two neighbours beyond which a face counts as inverted; 150 without it, 180: never")
+      ->type_name("DEG")
+      ->check(number(" above 0", [](double value) { return value > 0; }));
+  command
       ->add_option("--set", arguments->settings,
                    "With --frames: replace a value of the problem, with a dotted key; may be repeated")
       ->type_name("KEY=VALUE")
@@ -136,7 +146,7 @@ void add_check(CLI::App& program, int& code) {
       ->type_name("FILE");
   command->add_option("--out", arguments->out, "Write check.json and check.csv to this directory")->type_name("DIR");
   command->add_flag("--json", arguments->json, "Print check.json on standard output, and nothing else there");
-  command->add_flag("--quiet", arguments->quiet, "Print nothing but what cannot be judged");
+  command->add_flag("--quiet", arguments->quiet, "Print nothing but a line on what cannot be judged");
   command->callback([arguments, &code] { code = check(*arguments); });
 }
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/arguments.h"
 #include "cli/commands.h"
-#include "cli/problem_argument.h"
 #include "cli/progress.h"
 #include "problems/read_scene.h"
 #include "report/terminal_summary.h"

@@ -30,6 +30,7 @@ class VtuReader {
     const std::size_t end = bytes.find(mark);
     tags_ = bytes.substr(0, end);
     if (tags_.find("<VTKFile ") == std::string_view::npos) fail("is not a VTU file");
+    if (end == std::string_view::npos && tags_.find("</VTKFile>") == std::string_view::npos) fail("is cut short");
     if (end != std::string_view::npos) blocks_ = bytes.substr(end + mark.size());
   }
 

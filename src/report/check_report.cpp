@@ -39,11 +39,11 @@ void print_worst(Out out, const CheckReport& report) {
   }
 }
 
-/// The largest of what a frame's verdicts violate, each as a multiple of what is allowed; bad faces count most.
+/// The largest of what a frame's verdicts violate, each as a multiple of what is allowed.
 double badness(const FrameVerdict& frame) {
   double worst = 0;
   for (const Verdict& v : frame.verdicts) {
-    if (!v.within()) worst = std::max(worst, v.allowed > 0 ? v.max / v.allowed : 1e300 * v.max);
+    if (!v.within()) worst = std::max(worst, v.max / v.allowed);
   }
   return worst;
 }

@@ -50,9 +50,9 @@ void take_worst(CheckReport& report, int first_judged) {
   for (std::size_t k = 0; k < report.worst.size(); ++k) {
     const Verdict& worst = report.worst[k];
     if (worst.within()) continue;
-    report.findings.push_back(
-        fmt::format("{}: violated by {:.3g} at {}, allowed is {:.3g}; violated in {} of {} frames", worst.constraint,
-                    worst.max, worst.where, worst.allowed, frames_outside[k], report.frames.size()));
+    report.findings.push_back(fmt::format("{}: {:.3g} at {}, allowed is {:.3g}; violated in {} of {} frames",
+                                          worst.constraint, worst.max, worst.where, worst.allowed, frames_outside[k],
+                                          report.frames.size()));
   }
 }
 

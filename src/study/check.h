@@ -63,6 +63,7 @@ struct FrameOptions {
   /// ones follow by `step` (the problem's) for every number, s (static: load fraction).
   std::optional<double> step, first_time;
   std::optional<double> tolerance;  ///< relative; the problem's solver.tolerance.feasibility where not given
+  double largest_fold = 150;        ///< degrees, beyond which a face counts as inverted (PositionJudge::faces)
 };
 
 /// Judges positions by the constraints of a scene and for bad faces (PositionJudge). Vertices must be in the scene's

@@ -46,7 +46,8 @@ CheckReport check_frames(const Scene& scene, const FrameOptions& options) {
       if (frame.positions.size() != model->positions.size() || !frame.positions.allFinite()) continue;
       FrameVerdict verdict{file.path.string(), file.number, clock.time_of(file.number), {}};
       verdict.verdicts = judge.constraints(frame.positions, verdict.time);
-      for (Verdict& faces : judge.faces(frame.positions)) verdict.verdicts.push_back(std::move(faces));
+      for (Verdict& faces : judge.faces(frame.positions, options.largest_fold))
+        verdict.verdicts.push_back(std::move(faces));
       report.frames.push_back(std::move(verdict));
     } catch (const std::bad_alloc&) {
       throw;

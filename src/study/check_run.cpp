@@ -3,85 +3,32 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
-#include <set>
 
-#include "files/atomic_file.h"
 #include "problems/build.h"
-#include "problems/read_scene.h"
 #include "study/check.h"
 #include "study/examine.h"
 #include "study/frame_files.h"
 #include "study/records_json.h"
-#include "study/run_folder.h"
+#include "study/stored_run.h"
+#include "study/surface_fields.h"
 
 namespace taut {
 namespace fs = std::filesystem;
 namespace {
 
 // A number that is stored with all its digits and computed again may differ by round-off, on another machine at least:
-// by this much of the quantity's scale, or of its own value where it is the sum of many.
+// by this much of the scale of what was summed. Residuals are small differences of large forces, and get some more.
 constexpr double round_off = 1e-10;
-constexpr double relative_round_off = 1e-6;
+constexpr double residual_round_off = 1e-6;  // of the residual itself
 
 bool agree(double claimed, double found, double scale) {
-  if (std::isnan(claimed) && std::isnan(found)) return true;
-  return std::abs(claimed - found) <=
-         round_off * scale + relative_round_off * std::max(std::abs(claimed), std::abs(found));
+  return (std::isnan(claimed) && std::isnan(found)) || std::abs(claimed - found) <= round_off * scale;
 }
 
-/// A run as it is on disk.
-struct StoredRun {
-  Scene scene;
-  Continuation checkpoint;
-  RunSummary summary;
-  std::vector<StepRecord> steps;
-};
-
-std::vector<StepRecord> read_steps(const fs::path& file) {
-  std::vector<StepRecord> steps;
-  const std::string text = read_bytes(file);
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string place = "line " + std::to_string(steps.size() + 1);
-    try {
-      steps.push_back(parse_step(std::string_view(text).substr(begin, end - begin)));
-    } catch (const std::runtime_error& error) {
-      throw FileError(file, place + ": " + error.what());
-    }
-    if (steps.back().step != static_cast<int>(steps.size())) {
-      throw FileError(file, place + ": holds step " + std::to_string(steps.back().step) + ", a step is missing");
-    }
-    begin = end + 1;
-  }
-  return steps;
-}
-
-StoredRun read_run(const fs::path& folder) {
-  if (!fs::is_directory(folder)) throw RunRefused(folder.string() + ": there is no such directory");
-  StoredRun run;
-  const RunFolder stored(folder);
-  run.scene = read_scene(folder / "problem.json");
-  std::optional<Continuation> checkpoint = stored.continuation(run.scene, 0);
-  if (!checkpoint) throw RunRefused(folder.string() + ": is empty, there is no run in it");
-  run.checkpoint = std::move(*checkpoint);
-  const fs::path summary = folder / "summary.json";
-  if (!fs::exists(summary)) {
-    throw RunRefused(summary.string() + ": is missing; the run was killed or is still going on (--resume ends it)");
-  }
-  try {
-    run.summary = parse_summary(read_bytes(summary));
-  } catch (const FileError&) {
-    throw;
-  } catch (const std::runtime_error& error) {
-    throw FileError(summary, error.what());
-  }
-  run.steps = read_steps(folder / "steps.jsonl");
-  if (static_cast<int>(run.steps.size()) != run.checkpoint.summary.steps_done) {
-    throw FileError(folder / "steps.jsonl", fmt::format("holds {} steps where the checkpoint was written after {}",
-                                                        run.steps.size(), run.checkpoint.summary.steps_done));
-  }
-  return run;
+bool residuals_agree(double claimed, double found, double scale) {
+  return agree(claimed, found, scale + residual_round_off / round_off * std::max(std::abs(claimed), std::abs(found)));
 }
 
 class RunCheck {
@@ -94,6 +41,7 @@ class RunCheck {
   void check_files();
   void check_frame(const fs::path& file, int step);
   void check_energies(const Frame& frame, const StepRecord& record, const std::string& name);
+  void check_stretches(const Frame& frame, const std::string& name);
   void check_last_step();
   bool checkpoint_is_finite();
   void compare_claims(const StepRecord& claimed, const Residuals& found, double objective);
@@ -111,7 +59,7 @@ class RunCheck {
 
 RunCheck::RunCheck(const fs::path& folder, std::optional<double> tolerance)
     : folder_(folder),
-      run_(read_run(folder)),
+      run_(read_stored_run(folder)),
       model_(build_model(run_.scene)),
       stepper_(*model_, time_options(run_.scene)),
       tolerances_(run_.scene.solver.tolerance) {
@@ -211,6 +159,7 @@ void RunCheck::check_frame(const fs::path& file, int step) {
   stepper_.restore(std::move(state));
   const PositionJudge judge(*model_, tolerances_.feasibility);
   report_.frames.push_back({file.string(), step, stepper_.time(), judge.constraints(frame.positions, stepper_.time())});
+  check_stretches(frame, file.string());
   if (step == 0) {
     if (frame.positions != model_->positions) find(file.string() + ": is not how the problem begins");
     return;
@@ -221,7 +170,7 @@ void RunCheck::check_frame(const fs::path& file, int step) {
   const StepRecord& record = run_.steps[static_cast<std::size_t>(step - 1)];
   for (const Violation& claimed : record.residuals.violations) {
     for (const Verdict& found : report_.frames.back().verdicts) {
-      if (found.constraint != claimed.constraint || agree(claimed.max, found.max, 1)) continue;
+      if (found.constraint != claimed.constraint || residuals_agree(claimed.max, found.max, 1)) continue;
       find(fmt::format("{}: violates {} by {:.6g} ({}), but steps.jsonl says {:.6g}", file.string(), found.constraint,
                        found.max, found.where, claimed.max));
     }
@@ -241,6 +190,23 @@ void RunCheck::check_energies(const Frame& frame, const StepRecord& record, cons
     if (claimed != record.energies.end() && agree(claimed->second, value, scale)) continue;
     find(fmt::format("{}: {} of its positions is {:.12g} J, but steps.jsonl says {:.12g} J; one of them was changed",
                      name, energy, value, claimed == record.energies.end() ? std::nan("") : claimed->second));
+  }
+}
+
+/// VTU files hold the singular values of their triangles, which show a vertex that was moved to no other energy.
+void RunCheck::check_stretches(const Frame& frame, const std::string& name) {
+  const Frame again = SurfaceFields(*model_).frame(stepper_.state(), frame.time);
+  for (const Field& found : again.cell_fields) {
+    if (found.name != "sigma_max" && found.name != "sigma_min") continue;
+    for (const Field& stored : frame.cell_fields) {
+      if (stored.name != found.name) continue;
+      for (std::size_t t = 0; t < found.values.size(); ++t) {
+        if (agree(stored.values[t], found.values[t], 1)) continue;
+        find(fmt::format("{}: {} of {} is {:.12g} by its positions, but the file says {:.12g}", name, found.name,
+                         triangle_name(*model_, static_cast<Index>(t)), found.values[t], stored.values[t]));
+        break;
+      }
+    }
   }
 }
 
@@ -295,7 +261,7 @@ void RunCheck::compare_claims(const StepRecord& claimed, const Residuals& found,
   double energy_scale = 0;
   for (const auto& [energy, value] : claimed.energies) energy_scale += std::abs(value);
   const auto compare = [&](const std::string& name, double a, double b, double scale) {
-    if (agree(a, b, scale)) return;
+    if (residuals_agree(a, b, scale)) return;
     find(fmt::format("{} of step {} is {:.6g}, but steps.jsonl says {:.6g}", name, claimed.step, b, a));
   };
   compare("stationarity", says.stationarity, found.stationarity, 1);
@@ -305,7 +271,10 @@ void RunCheck::compare_claims(const StepRecord& claimed, const Residuals& found,
   compare("feasibility_unscaled", says.feasibility_unscaled, found.feasibility_unscaled, 1);
   compare("complementarity", says.complementarity, found.complementarity, 1);
   compare("complementarity_unscaled", says.complementarity_unscaled, found.complementarity_unscaled, found.force_scale);
-  compare("objective", claimed.objective, objective, std::max(energy_scale, std::abs(objective)));
+  if (!agree(claimed.objective, objective, std::max(energy_scale, std::abs(objective)))) {
+    find(fmt::format("objective of step {} is {:.12g} J, but steps.jsonl says {:.12g} J", claimed.step, objective,
+                     claimed.objective));
+  }
   for (const Violation& violation : found.violations) {
     for (const Violation& told : says.violations) {
       if (told.constraint == violation.constraint)

@@ -140,7 +140,7 @@ std::optional<Continuation> RunFolder::continuation(const Scene& scene, int thre
 } catch (const RunRefused&) {
   throw;
 } catch (const std::exception& error) {
-  throw RunRefused(path_.string() + ": cannot be resumed: " + error.what());
+  throw RunRefused(path_.string() + ": its checkpoint cannot be used: " + error.what());
 }
 
 void RunFolder::begin(const Scene& scene, const Continuation& start) {

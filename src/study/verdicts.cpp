@@ -4,14 +4,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <numbers>
 
 #include "study/examine.h"
 
 namespace taut {
 namespace {
 
-constexpr double smallest_relative_area = 1e-6;
+constexpr double largest_slenderness = 1e4;
 
 Vector3 area_vector(const Triangle& t, const Vector& x) {
   const auto at = [&](int corner) { return x.segment<3>(3 * t[corner]); };
@@ -107,25 +109,25 @@ Verdict PositionJudge::pins(const Vector& x, double time) const {
                       [&](Index pin) { return vertex_name(model_, vertices[static_cast<std::size_t>(pin)]); });
 }
 
-std::vector<Verdict> PositionJudge::faces(const Vector& x) const {
+std::vector<Verdict> PositionJudge::faces(const Vector& x, double largest_fold) const {
   std::vector<Vector3> normals;
-  std::vector<double> inverted, degenerate;
+  std::vector<double> folds, slenderness;
   for (const Triangle& triangle : model_.triangles) {
     const Vector3 area = area_vector(triangle, x);
-    const double longest = longest_edge_squared(triangle, x);
-    const double relative = longest > 0 ? 0.5 * area.norm() / longest : 0;
-    degenerate.push_back(std::max(0.0, 1 - relative / smallest_relative_area));
-    normals.push_back(relative < smallest_relative_area ? Vector3::Zero().eval() : Vector3(area.normalized()));
+    slenderness.push_back(area.isZero(0) ? std::numeric_limits<double>::infinity()
+                                         : longest_edge_squared(triangle, x) / area.norm());
+    normals.push_back(area.normalized());  // zero without area, at a right angle to everything
   }
   for (std::size_t t = 0; t < normals.size(); ++t) {
     std::vector<double> cosines;
     for (const int other : neighbours_[t]) cosines.push_back(normals[t].dot(normals[static_cast<std::size_t>(other)]));
     std::sort(cosines.begin(), cosines.end());
-    inverted.push_back(cosines.size() >= 2 ? std::max(0.0, -cosines[1]) : 0);
+    const double cosine = cosines.size() < 2 ? 1.0 : std::clamp(cosines[1], -1.0, 1.0);
+    folds.push_back(std::acos(cosine) * 180 / std::numbers::pi);
   }
   const auto name = [this](Index triangle) { return triangle_name(model_, triangle); };
-  return {verdict_over("inverted faces", std::move(inverted), 0, name),
-          verdict_over("degenerate faces", std::move(degenerate), 0, name)};
+  return {verdict_over("inverted faces", std::move(folds), largest_fold, name),
+          verdict_over("degenerate faces", std::move(slenderness), largest_slenderness, name)};
 }
 
 }  // namespace taut

@@ -31,14 +31,15 @@ class PositionJudge {
   /// One verdict for each constraint, then one for the pins where there are any. `time` in s (static: load fraction).
   std::vector<Verdict> constraints(const Vector& x, double time) const;
 
-  /// Two verdicts, in which any value above 0 is a violation.
+  /// Two verdicts on the faces themselves.
   ///
-  /// "inverted faces": a face whose area vector is more than 90 degrees from those of at least two of its neighbours
-  /// across edges, counting neighbours from which it was not so at the start. The value is -cos of the second largest
-  /// angle. A fold along one edge, however sharp, inverts nothing.
+  /// "inverted faces", in degrees: the angle between the area vectors of a face and a neighbour across an edge, the
+  /// second largest of those with neighbours that were within 90 degrees at the start; allowed is `largest_fold`. A
+  /// vertex that crossed its opposite edge leaves a face at 180 degrees from two neighbours or three. In space nothing
+  /// else tells such a face from one that is folded over along two edges; a fold along one edge counts for nothing.
   ///
-  /// "degenerate faces": area below 1e-6 of the longest edge squared. The value is what is missing, as a share of that.
-  std::vector<Verdict> faces(const Vector& x) const;
+  /// "degenerate faces": longest edge over height, infinite without area; allowed is 1e4.
+  std::vector<Verdict> faces(const Vector& x, double largest_fold) const;
 
  private:
   Verdict pins(const Vector& x, double time) const;

@@ -168,9 +168,9 @@ TEST_F(VtuTest, OtherFilesAreRefused) {
     write_atomically(path("f.vtu"), text);
     return message_of<FileError>([&] { read_vtu(path("f.vtu")); });
   };
-  EXPECT_THAT(refusal("<VTKFile type=\"PolyData\">"), testing::HasSubstr("not an UnstructuredGrid"));
+  EXPECT_THAT(refusal("<VTKFile type=\"PolyData\"></VTKFile>"), testing::HasSubstr("not an UnstructuredGrid"));
   std::string text = ascii_file;
-  text.replace(text.find("ascii"), 5, "binary");
+  text.replace(text.find("ascii", text.find("Name=\"Points\"")), 5, "binary");
   EXPECT_THAT(refusal(text), testing::HasSubstr("array 'Points' is stored as 'binary', expected ascii or raw"));
   text = ascii_file;
   text.replace(text.find("0 0 0"), 5, "0 0 x");

@@ -1,4 +1,4 @@
-#include "cli/problem_argument.h"
+#include "cli/arguments.h"
 
 #include "cli/commands.h"
 

@@ -2,16 +2,18 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "problems/read_scene.h"
 
 namespace taut {
 
-/// A file, or else the name of a problem in the catalogue. Throws UsageError where it is neither.
+/// The problem file that PROBLEM names: a file, or else a problem of the catalogue. Throws UsageError where neither is
+/// there.
 std::filesystem::path find_problem(const std::string& problem);
 
-/// What --set was given: texts KEY=VALUE. Throws UsageError for others.
+/// The values of --set, each KEY=VALUE. Throws UsageError for anything else.
 Overrides parse_settings(const std::vector<std::string>& settings);
 
 }  // namespace taut
