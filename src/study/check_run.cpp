@@ -175,6 +175,13 @@ void RunCheck::check_frame(const fs::path& file, int step) {
                        found.max, found.where, claimed.max));
     }
   }
+  const std::vector<Penetration> depths = penetrations(*model_, frame.positions);
+  for (std::size_t k = 0; k < std::min(depths.size(), record.penetrations.size()); ++k) {
+    const Penetration &found = depths[k], &claimed = record.penetrations[k];
+    if (agree(claimed.edge, found.edge, 1) && agree(claimed.face, found.face, 1)) continue;
+    find(fmt::format("{}: edges and faces are {:.6g} and {:.6g} m inside {}, but steps.jsonl says {:.6g} and {:.6g}",
+                     file.string(), found.edge, found.face, found.constraint, claimed.edge, claimed.face));
+  }
   check_energies(frame, record, file.string());
 }
 

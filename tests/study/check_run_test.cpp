@@ -249,6 +249,14 @@ TEST_F(CheckRun, AnEnergyOrObjectiveThatWasEditedIsFound) {
   expect_found({"frames/tiny_00006.vtu: kinetic", "objective of step 8 is ", "summary.json: objective is"});
 }
 
+TEST_F(CheckRun, ADepthInASphereThatWasEditedIsFound) {
+  solve(scene({{"constraints.ball", R"({"type": "sphere", "body": "cloth", "center": [0.5, 0.5, -0.25],
+    "radius": 0.245})"}}));
+  EXPECT_EQ(check().verdict(), CheckVerdict::within) << testing::PrintToString(check().findings);
+  change_steps([](int, Json& line) { line["violations"]["ball"]["face_penetration"] = 1.0; });
+  expect_found({"frames/tiny_00006.vtu: edges and faces are ", "m inside ball, but steps.jsonl says"});
+}
+
 TEST_F(CheckRun, NumbersThatAreNotFiniteInTheCheckpointAreNamed) {
   solve(scene());
   change_checkpoint([](Checkpoint& checkpoint) { checkpoint.arrays.at("positions")[3 * 12] = nan; });
