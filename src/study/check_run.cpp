@@ -54,6 +54,8 @@ class RunCheck {
   std::unique_ptr<Model> model_;
   Stepper stepper_;
   Tolerances tolerances_;
+  PositionJudge judge_;
+  SurfaceFields fields_;
   CheckReport report_;
 };
 
@@ -62,7 +64,9 @@ RunCheck::RunCheck(const fs::path& folder, std::optional<double> tolerance)
       run_(read_stored_run(folder)),
       model_(build_model(run_.scene)),
       stepper_(*model_, time_options(run_.scene)),
-      tolerances_(run_.scene.solver.tolerance) {
+      tolerances_(run_.scene.solver.tolerance),
+      judge_(*model_, tolerance.value_or(tolerances_.feasibility)),
+      fields_(*model_) {
   if (tolerance) tolerances_.feasibility = *tolerance;
 }
 
@@ -157,8 +161,8 @@ void RunCheck::check_frame(const fs::path& file, int step) {
     state.velocities = Eigen::Map<const Vector>(frame.point_fields[0].values.data(), state.velocities.size());
   }
   stepper_.restore(std::move(state));
-  const PositionJudge judge(*model_, tolerances_.feasibility);
-  report_.frames.push_back({file.string(), step, stepper_.time(), judge.constraints(frame.positions, stepper_.time())});
+  report_.frames.push_back(
+      {file.string(), step, stepper_.time(), judge_.constraints(frame.positions, stepper_.time())});
   check_stretches(frame, file.string());
   if (step == 0) {
     if (frame.positions != model_->positions) find(file.string() + ": is not how the problem begins");
@@ -202,7 +206,7 @@ void RunCheck::check_energies(const Frame& frame, const StepRecord& record, cons
 
 /// VTU files hold the singular values of their triangles, which show a vertex that was moved to no other energy.
 void RunCheck::check_stretches(const Frame& frame, const std::string& name) {
-  const Frame again = SurfaceFields(*model_).frame(stepper_.state(), frame.time);
+  const Frame again = fields_.frame(stepper_.state(), frame.time);
   for (const Field& found : again.cell_fields) {
     if (found.name != "sigma_max" && found.name != "sigma_min") continue;
     for (const Field& stored : frame.cell_fields) {
