@@ -34,7 +34,7 @@ std::string_view to_string(CheckVerdict verdict);
 
 /// What a check has found. Each line of `unusable` and `findings` is a sentence that names the file or the element.
 struct CheckReport {
-  std::string problem, subject;      ///< subject: the folder of the run, or the patterns
+  std::string problem, subject;      ///< subject: the folder of the run, or the first pattern
   double tolerance = 0;              ///< of violations, relative
   std::vector<FrameVerdict> frames;  ///< those that could be judged
   std::vector<Verdict> worst;        ///< of each constraint over all frames, `elements` and `violated` summed up

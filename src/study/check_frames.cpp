@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <exception>
 
@@ -29,7 +28,8 @@ class Clock {
 CheckReport check_frames(const Scene& scene, const FrameOptions& options) {
   CheckReport report;
   report.problem = scene.name;
-  report.subject = fmt::format("{}", fmt::join(options.patterns, ", "));
+  report.subject = options.patterns.front();
+  if (options.patterns.size() > 1) report.subject += fmt::format(" and {} more", options.patterns.size() - 1);
   report.tolerance = options.tolerance.value_or(scene.solver.tolerance.feasibility);
 
   const auto model = build_model(scene);

@@ -256,8 +256,9 @@ void RunCheck::check_last_step() {
     result.x = state.positions;
     result.multipliers = state.warm.multipliers;
     const StepRecord& claimed = run_.steps.at(static_cast<std::size_t>(state.step - 1));
-    report_.last_step = RecomputedStep{state.step, claimed.status, named_residuals(*model_, problem, result)};
-    const Residuals& found = report_.last_step->residuals;
+    report_.last_step = RecomputedStep{state.step, claimed.status, residuals(problem, result)};
+    Residuals& found = report_.last_step->residuals;
+    name_for_people(found, problem, *model_);
     compare_claims(claimed, found, objective(problem, result.x));
     find_excess(found);
   } catch (const std::invalid_argument& error) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 
 #include "constraints/obstacle.h"
 #include "geometry/distance.h"
@@ -50,19 +51,6 @@ std::string pins_name(const Model& model) {
     if (constraint->name() == "pins") return "pins (held vertices)";
   }
   return "pins";
-}
-
-Residuals named_residuals(const Model& model, const Problem& problem, const Result& result) {
-  Residuals named = residuals(problem, result);
-  constexpr std::string_view prefix = "vertex ";
-  if (named.worst_node.starts_with(prefix)) {
-    named.worst_node = vertex_name(model, std::stol(named.worst_node.substr(prefix.size())));
-  }
-  if (problem.fixed_variables.empty()) return named;
-  Violation& pins = named.violations.back();
-  pins.constraint = pins_name(model);
-  if (pins.element >= 0) pins.where = vertex_name(model, pins.element);
-  return named;
 }
 
 double objective(const Problem& problem, const Vector& x) {
@@ -125,6 +113,17 @@ std::string triangle_name(const Model& model, Index triangle) {
     }
   }
   return "triangle " + std::to_string(triangle);
+}
+
+void name_for_people(Residuals& residuals, const Problem& problem, const Model& model) {
+  constexpr std::string_view prefix = "vertex ";
+  if (residuals.worst_node.starts_with(prefix)) {
+    residuals.worst_node = vertex_name(model, std::stol(residuals.worst_node.substr(prefix.size())));
+  }
+  if (problem.fixed_variables.empty()) return;
+  Violation& pins = residuals.violations.back();
+  if (pins.element >= 0) pins.where = vertex_name(model, pins.element);
+  pins.constraint = pins_name(model);
 }
 
 }  // namespace taut

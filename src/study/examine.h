@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/problem.h"
+#include "core/residuals.h"
 #include "dynamics/model.h"
 #include "study/records.h"
 
@@ -11,10 +12,6 @@ namespace taut {
 
 /// The sum of the problem's energies at x, J.
 double objective(const Problem& problem, const Vector& x);
-
-/// residuals() with names for people: "vertex 3 of cloth" for a node, and another name for the pins where a constraint
-/// is called "pins". `problem` is a step of `model`.
-Residuals named_residuals(const Model& model, const Problem& problem, const Result& result);
 
 /// The name under which residuals speak of the pins of this model.
 std::string pins_name(const Model& model);
@@ -32,5 +29,8 @@ std::string vertex_name(const Model& model, Index vertex);
 
 /// "triangle 17 of cloth" for a triangle of the scene.
 std::string triangle_name(const Model& model, Index triangle);
+
+/// The judge speaks of scene vertices and of "pins"; people know bodies, and may have called a constraint so.
+void name_for_people(Residuals& residuals, const Problem& problem, const Model& model);
 
 }  // namespace taut

@@ -177,10 +177,11 @@ StepRecord Run::judge(const Problem& problem, const Result& result) {
   StepRecord record;
   {
     const Stopwatch watch(record.judging);
-    record.residuals = named_residuals(*model_, problem, result);
+    record.residuals = residuals(problem, result);
     record.penetrations = penetrations(*model_, result.x);
     record.objective = objective(problem, result.x);
   }
+  name_for_people(record.residuals, problem, *model_);
   record.step = stepper_->state().step + 1;
   record.time = stepper_->time() + stepper_->options().step;
   record.status = result.status;
