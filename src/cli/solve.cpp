@@ -19,7 +19,6 @@
 #include "study/run.h"
 
 namespace taut {
-namespace fs = std::filesystem;
 namespace {
 
 struct SolveArguments {
@@ -47,6 +46,12 @@ void install_signal_handlers() {
   ::sigaction(SIGTERM, &action, nullptr);
 }
 
+Overrides overrides_of(const SolveArguments& arguments) {
+  Overrides overrides = parse_settings(arguments.settings);
+  if (!arguments.format.empty()) overrides.emplace_back("output.format", arguments.format);
+  return overrides;
+}
+
 std::string progress_note(const StepRecord& record) {
   if (record.status != Status::solved) return fmt::format("step {}: {}", record.step, to_string(record.status));
   return fmt::format("{} Newton systems, residual {:.0e}", record.counts.linear_solves, record.residuals.stationarity);
@@ -61,9 +66,7 @@ int solve(const SolveArguments& arguments) {
   if (arguments.resume && arguments.out.empty())
     throw UsageError("--resume needs --out DIR, the directory of the run to go on with");
   install_signal_handlers();
-  Overrides overrides = parse_settings(arguments.settings);
-  if (!arguments.format.empty()) overrides.emplace_back("output.format", arguments.format);
-  const Scene scene = read_scene(find_problem(arguments.problem), overrides);
+  const Scene scene = read_scene(find_problem(arguments.problem), overrides_of(arguments));
 
   std::unique_ptr<Progress> progress;
   RunOptions options;

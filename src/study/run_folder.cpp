@@ -12,12 +12,10 @@
 namespace taut {
 namespace fs = std::filesystem;
 namespace {
-
 constexpr const char* checkpoint_file = "checkpoint.bin";
 constexpr const char* summary_file = "summary.json";
 constexpr const char* steps_file = "steps.jsonl";
 constexpr const char* problem_file = "problem.json";
-
 constexpr const char* before_prefix = "before ";
 
 /// The state before the last step, under names of its own. Its positions and velocities are the previous ones of the
