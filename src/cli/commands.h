@@ -27,6 +27,7 @@ class UsageError : public std::runtime_error {
 
 // Each adds its sub-command to the program; the command writes its exit code to `code` when it is called.
 void add_solve(CLI::App& program, int& code);
+void add_check(CLI::App& program, int& code);
 void add_list(CLI::App& program, int& code);
 void add_schema(CLI::App& program, int& code);
 

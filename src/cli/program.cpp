@@ -22,6 +22,7 @@ constexpr const char* footer =
     "\nExamples:\n"
     "  taut list problems                        what there is to try\n"
     "  taut solve hanging_cloth --out out/cloth  solve one, keep the results\n"
+    "  taut check out/cloth                      judge what is stored there once more\n"
     "  taut solve --help                         everything about solving\n"
     "\n"
     "Exit codes: 0 solved within tolerance, 1 internal error or a file that cannot be written,\n"
@@ -56,6 +57,7 @@ int run_program(int argc, char** argv) {
   program.require_subcommand(1);
   int code = exit_solved;
   add_solve(program, code);
+  add_check(program, code);
   add_list(program, code);
   add_schema(program, code);
   try {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/progress.h"
 #include "problems/read_scene.h"
@@ -18,7 +19,6 @@
 #include "study/run.h"
 
 namespace taut {
-namespace fs = std::filesystem;
 namespace {
 
 struct SolveArguments {
@@ -46,25 +46,8 @@ void install_signal_handlers() {
   ::sigaction(SIGTERM, &action, nullptr);
 }
 
-/// A file, or else the name of a problem in the catalogue.
-fs::path find_problem(const std::string& problem) {
-  std::error_code error;
-  if (fs::is_regular_file(problem, error)) return problem;
-  const bool is_name = problem.find_first_of("/.") == problem.npos;
-  const fs::path listed = catalogue_folder() / (problem + ".json");
-  if (is_name && fs::is_regular_file(listed, error)) return listed;
-  throw UsageError(
-      problem + (is_name ? ": no such file, and no problem of the catalogue (taut list problems)" : ": no such file"));
-}
-
 Overrides overrides_of(const SolveArguments& arguments) {
-  Overrides overrides;
-  for (const std::string& setting : arguments.settings) {
-    const std::size_t equals = setting.find('=');
-    if (equals == setting.npos || equals == 0)
-      throw UsageError("--set " + setting + ": expected KEY=VALUE, as in time.steps=10");
-    overrides.emplace_back(setting.substr(0, equals), setting.substr(equals + 1));
-  }
+  Overrides overrides = parse_settings(arguments.settings);
   if (!arguments.format.empty()) overrides.emplace_back("output.format", arguments.format);
   return overrides;
 }

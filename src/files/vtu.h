@@ -32,8 +32,8 @@ struct Frame {
 /// list), FileError.
 void write_vtu(const std::filesystem::path& path, const Frame& frame);
 
-/// Reads what write_vtu() has written; files of other programs are refused with a FileError unless they use the very
-/// same layout.
+/// Reads what write_vtu() has written, and triangles of other programs whose arrays are ASCII text or of the very same
+/// layout; anything else is refused with a FileError.
 Frame read_vtu(const std::filesystem::path& path);
 
 /// Writes atomically the list of frames that ParaView opens as one animation: times in seconds, files relative to the

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
@@ -20,15 +21,17 @@ std::string_view attribute(std::string_view tag, std::string_view name) {
   return rest.substr(0, rest.find('"'));
 }
 
-/// Reads the layout that write_vtu() writes: tags first, then the blocks of bytes they point to.
+/// Reads the layout that write_vtu() writes, tags first and then the blocks of bytes they point to; and arrays whose
+/// numbers stand between their tags as text.
 class VtuReader {
  public:
   VtuReader(const std::filesystem::path& path, std::string_view bytes) : path_(path) {
     constexpr std::string_view mark = "<AppendedData encoding=\"raw\">\n_";
     const std::size_t end = bytes.find(mark);
-    if (end == std::string_view::npos) fail("is not a VTU file with raw appended data");
     tags_ = bytes.substr(0, end);
-    blocks_ = bytes.substr(end + mark.size());
+    if (tags_.find("<VTKFile ") == std::string_view::npos) fail("is not a VTU file");
+    if (end == std::string_view::npos && tags_.find("</VTKFile>") == std::string_view::npos) fail("is cut short");
+    if (end != std::string_view::npos) blocks_ = bytes.substr(end + mark.size());
   }
 
   Frame read() {
@@ -40,8 +43,8 @@ class VtuReader {
         cells_ = number("NumberOfCells");
       } else if (starts("DataArray")) {
         read_array();
-      } else {
-        section_ = tag_;
+      } else if (const std::string_view name = tag_.substr(0, tag_.find(' ')); is_section(name)) {
+        section_ = name;
       }
     }
     if (static_cast<std::uint64_t>(frame_.positions.size()) != 3 * points_ || offsets_ != cells_ || types_ != cells_ ||
@@ -56,6 +59,9 @@ class VtuReader {
   bool starts(std::string_view name) const {
     return tag_.starts_with(name) && tag_.substr(name.size()).starts_with(' ');
   }
+  static bool is_section(std::string_view name) {
+    return name == "FieldData" || name == "PointData" || name == "CellData" || name == "Points" || name == "Cells";
+  }
 
   bool next_tag() {
     const std::size_t begin = tags_.find('<');
@@ -67,8 +73,10 @@ class VtuReader {
   }
 
   void check_layout() const {
-    if (attribute(tag_, "type") != "UnstructuredGrid" || attribute(tag_, "byte_order") != "LittleEndian" ||
-        attribute(tag_, "header_type") != "UInt64" || !attribute(tag_, "compressor").empty()) {
+    if (attribute(tag_, "type") != "UnstructuredGrid") fail("is a VTK file, but not an UnstructuredGrid");
+    if (blocks_.empty()) return;
+    if (attribute(tag_, "byte_order") != "LittleEndian" || attribute(tag_, "header_type") != "UInt64" ||
+        !attribute(tag_, "compressor").empty()) {
       fail("must be an uncompressed little-endian UnstructuredGrid with 64-bit headers");
     }
   }
@@ -87,6 +95,12 @@ class VtuReader {
   template <typename Number>
   std::vector<Number> block(std::string_view type, std::uint64_t count) const {
     const std::string name(attribute(tag_, "Name"));
+    const std::string_view format = attribute(tag_, "format");
+    if (format == "ascii") return text_numbers<Number>(count);
+    if (format != "appended") {
+      fail("array '" + name + "' is stored as '" + std::string(format) +
+           "', expected ascii or raw appended data (in ParaView: Data Mode Ascii)");
+    }
     if (attribute(tag_, "type") != type) fail("array '" + name + "' must be of type " + std::string(type));
     const std::uint64_t offset = number("offset", std::numeric_limits<std::uint64_t>::max());
     std::uint64_t size = 0;
@@ -100,6 +114,29 @@ class VtuReader {
     if (size > blocks_.size() - offset - sizeof size) fail("is cut short inside array '" + name + "'");
     std::vector<Number> values(count);
     if (count > 0) std::memcpy(values.data(), blocks_.data() + offset + sizeof size, size);
+    return values;
+  }
+
+  /// The numbers between the current tag and the next, of whatever type.
+  template <typename Number>
+  std::vector<Number> text_numbers(std::uint64_t count) const {
+    const std::string name(attribute(tag_, "Name"));
+    std::string_view text = tags_.substr(0, tags_.find('<'));
+    text.remove_prefix(std::min<std::size_t>(1, text.size()));  // the '>'
+    std::vector<Number> values;
+    while (true) {
+      const std::size_t begin = text.find_first_not_of(" \t\r\n");
+      if (begin == std::string_view::npos) break;
+      Number value{};
+      const auto [rest, error] = std::from_chars(text.data() + begin, text.data() + text.size(), value);
+      if (error != std::errc()) fail("array '" + name + "' holds something that is not a number");
+      values.push_back(value);
+      text.remove_prefix(static_cast<std::size_t>(rest - text.data()));
+    }
+    if (values.size() != count) {
+      fail("array '" + name + "' holds " + std::to_string(values.size()) + " numbers, expected " +
+           std::to_string(count));
+    }
     return values;
   }
 
@@ -125,7 +162,7 @@ class VtuReader {
   }
 
   Field field(std::uint64_t count) const {
-    const std::uint64_t components = number("NumberOfComponents");
+    const std::uint64_t components = attribute(tag_, "NumberOfComponents").empty() ? 1 : number("NumberOfComponents");
     return {xml_unescaped(attribute(tag_, "Name")), static_cast<int>(components),
             block<double>("Float64", count * components)};
   }

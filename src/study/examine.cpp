@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 
 #include "constraints/obstacle.h"
 #include "geometry/distance.h"
@@ -44,6 +45,13 @@ Penetration penetration_of(const SphereObstacle& sphere, const std::vector<Trian
 }
 
 }  // namespace
+
+std::string pins_name(const Model& model) {
+  for (const auto& constraint : model.constraints) {
+    if (constraint->name() == "pins") return "pins (held vertices)";
+  }
+  return "pins";
+}
 
 double objective(const Problem& problem, const Vector& x) {
   std::array<double, max_stencil_width> local;
@@ -96,6 +104,26 @@ std::string vertex_name(const Model& model, Index vertex) {
     }
   }
   return "vertex " + std::to_string(vertex);
+}
+
+std::string triangle_name(const Model& model, Index triangle) {
+  for (const BodyRange& body : model.bodies) {
+    if (triangle >= body.first_triangle && triangle < body.first_triangle + body.triangles) {
+      return "triangle " + std::to_string(triangle - body.first_triangle) + " of " + body.name;
+    }
+  }
+  return "triangle " + std::to_string(triangle);
+}
+
+void name_for_people(Residuals& residuals, const Problem& problem, const Model& model) {
+  constexpr std::string_view prefix = "vertex ";
+  if (residuals.worst_node.starts_with(prefix)) {
+    residuals.worst_node = vertex_name(model, std::stol(residuals.worst_node.substr(prefix.size())));
+  }
+  if (problem.fixed_variables.empty()) return;
+  Violation& pins = residuals.violations.back();
+  if (pins.element >= 0) pins.where = vertex_name(model, pins.element);
+  pins.constraint = pins_name(model);
 }
 
 }  // namespace taut

@@ -138,6 +138,49 @@ Json unfinished_json(const std::optional<UnfinishedStep>& unfinished) {
           {"complementarity", unfinished->complementarity}};
 }
 
+NamedNumbers read_numbers(const Json& json) {
+  NamedNumbers numbers;
+  for (const auto& [name, value] : json.items()) numbers.emplace_back(name, number(value));
+  return numbers;
+}
+
+void read_step_residuals(const Json& json, Residuals& r) {
+  r.stationarity = number(json.at("stationarity"));
+  r.stationarity_unscaled = number(json.at("stationarity_unscaled"));
+  r.force_scale = number(json.at("force_scale"));
+  r.worst_node = json.at("worst_node");
+  r.feasibility = number(json.at("feasibility"));
+  r.feasibility_unscaled = number(json.at("feasibility_unscaled"));
+  r.complementarity = number(json.at("complementarity"));
+  r.complementarity_unscaled = number(json.at("complementarity_unscaled"));
+}
+
+StepRecord step_of(const Json& json) {
+  StepRecord record;
+  record.step = json.at("step");
+  record.time = number(json.at("time"));
+  record.status = status_from_string(json.at("status").get<std::string>());
+  record.message = json.at("message");
+  read_step_residuals(json.at("residuals"), record.residuals);
+  for (const auto& [constraint, v] : json.at("violations").items()) {
+    record.residuals.violations.push_back({constraint, number(v.at("max")), v.at("where"), -1});
+    if (!v.contains("edge_penetration")) continue;
+    record.penetrations.push_back({constraint, number(v.at("edge_penetration")), number(v.at("face_penetration"))});
+  }
+  record.objective = number(json.at("objective"));
+  record.energies = read_numbers(json.at("energies"));
+  record.penalties = read_numbers(json.at("penalties"));
+  const Json &counts = json.at("counts"), &seconds = json.at("seconds");
+  record.counts.outer = counts.at("outer");
+  record.counts.linear_solves = counts.at("linear_solves");
+  record.counts.factorizations = counts.at("factorizations");
+  record.counts.function_evaluations = counts.at("function_evaluations");
+  record.seconds = {number(seconds.at("total")), number(seconds.at("assembly")), number(seconds.at("analysis")),
+                    number(seconds.at("factorization")), number(seconds.at("solve"))};
+  record.judging = number(seconds.at("judging"));
+  return record;
+}
+
 RunSummary summary_of(const Json& json) {
   if (json.at("format") != format_version) throw std::runtime_error("summary.json is of another version");
   RunSummary s;
@@ -230,6 +273,14 @@ std::string step_line(const StepRecord& record) {
   json["seconds"].update(timings_json(record.seconds));
   json["seconds"]["judging"] = record.judging;
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+StepRecord parse_step(std::string_view line) {
+  try {
+    return step_of(Json::parse(line));
+  } catch (const std::exception& error) {
+    throw std::runtime_error(std::string("not a step of Taut: ") + error.what());
+  }
 }
 
 }  // namespace taut

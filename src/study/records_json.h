@@ -16,5 +16,7 @@ RunSummary parse_summary(std::string_view text);
 
 /// One line of steps.jsonl, without the line break. Only its "seconds" differ from run to run.
 std::string step_line(const StepRecord& record);
+/// What step_line() has written; Violation::element is not in it. Throws std::runtime_error for anything else.
+StepRecord parse_step(std::string_view line);
 
 }  // namespace taut

@@ -39,20 +39,6 @@ Budget budget_of(const RunOptions& options) {
   return budget;
 }
 
-/// The judge speaks of scene vertices and of "pins"; people know bodies, and may have called a constraint so.
-void name_for_people(Residuals& residuals, const Problem& problem, const Model& model) {
-  constexpr std::string_view prefix = "vertex ";
-  if (residuals.worst_node.starts_with(prefix)) {
-    residuals.worst_node = vertex_name(model, std::stol(residuals.worst_node.substr(prefix.size())));
-  }
-  if (problem.fixed_variables.empty()) return;
-  Violation& pins = residuals.violations.back();
-  if (pins.element >= 0) pins.where = vertex_name(model, pins.element);
-  for (const Constraint* constraint : problem.constraints) {
-    if (constraint->name() == pins.constraint) pins.constraint += " (held vertices)";
-  }
-}
-
 class Run {
  public:
   Run(const Scene& scene, const RunOptions& options)
@@ -85,7 +71,8 @@ class Run {
   Solver* solver_ = nullptr;
   std::optional<RunFolder> folder_;
   std::optional<FrameOutput> frames_;
-  RunSummary summary_;  // of the finished steps
+  std::optional<State> before_;  // what the last step started from
+  RunSummary summary_;           // of the finished steps
   Seconds checkpoint_cost_{0};
   bool failed_ = false;              // stopped by a step that is not solved
   Status stopped_ = Status::solved;  // interrupted or time_limit
@@ -121,13 +108,16 @@ bool Run::begin() {
   summary_.machine = machine;
   summary_.threads = threads_;
   seconds_before_ = summary_.seconds.total;
-  if (from) stepper_->restore(from->state);
+  if (from) {
+    before_ = from->before;
+    stepper_->restore(from->state);
+  }
   if (!folder_) return true;
   const Stopwatch watch(summary_.seconds.output);
   if (from) {
     folder_->go_on(*from);
   } else {
-    folder_->begin(scene_, {false, threads_, stepper_->state(), summary_});
+    folder_->begin(scene_, {false, threads_, stepper_->state(), summary_, {}});
   }
   checkpoint_time_ = Clock::now();
   frames_.emplace(scene_, *model_, folder_->path(), stepper_->state().step);
@@ -171,6 +161,7 @@ bool Run::step() {
     summary_.worst_elements_step = record.step;
   }
   if (usable) {
+    if (folder_) before_ = stepper_->state();
     stepper_->accept(result);
     record.time = stepper_->time();
     const Stopwatch watch(record.judging);
@@ -244,7 +235,7 @@ void Run::write_checkpoint_if_due() {
 void Run::write_checkpoint(bool finished) {
   const Clock::time_point begin = Clock::now();
   frames_->write_index();
-  folder_->write_checkpoint(scene_.hash, {finished, threads_, stepper_->state(), summary_});
+  folder_->write_checkpoint(scene_.hash, {finished, threads_, stepper_->state(), summary_, before_});
   checkpoint_time_ = Clock::now();
   checkpoint_cost_ = checkpoint_time_ - begin;
 }

@@ -24,6 +24,9 @@ struct Continuation {
   int threads = 1;
   State state;
   RunSummary summary;  ///< of the steps up to state.step
+  /// What the last step started from, without its multipliers, so that the step can be posed and judged once more;
+  /// nothing before the first step.
+  std::optional<State> before;
 };
 
 /// The folder that a run writes to: checkpoint.bin, summary.json, steps.jsonl, problem.json; frames and pictures are

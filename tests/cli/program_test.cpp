@@ -2,19 +2,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
 
-#include "tests/files/temporary_folder.h"
+#include "tests/cli/runs_program.h"
 
 namespace taut {
 namespace {
@@ -23,52 +18,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 using testing::HasSubstr;
 
-struct Outcome {
-  int code = -1;
-  std::string out, error;
-};
-
-std::string content(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-class ProgramTest : public FilesTest {
+class ProgramTest : public RunsProgram {
  protected:
-  /// Starts the program; its output goes to files in this test's folder.
-  pid_t start(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), TAUT_PROGRAM);
-    std::vector<char*> pointers;
-    for (std::string& argument : arguments) pointers.push_back(argument.data());
-    pointers.push_back(nullptr);
-    const std::string out = path("stdout"), error = path("stderr");
-    const pid_t process = ::fork();
-    if (process == 0) {
-      const bool opened = std::freopen(out.c_str(), "w", stdout) && std::freopen(error.c_str(), "w", stderr);
-      if (opened) ::execv(TAUT_PROGRAM, pointers.data());
-      ::_exit(127);
-    }
-    EXPECT_GT(process, 0);
-    return process;
-  }
-  Outcome wait(pid_t process) {
-    int status = 0;
-    EXPECT_EQ(::waitpid(process, &status, 0), process);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), content(path("stdout")),
-            content(path("stderr"))};
-  }
-  Outcome taut(const std::vector<std::string>& arguments) { return wait(start(arguments)); }
-
-  /// Bad usage and input: exit code 2 and one line on standard error that says so.
-  void expect_refused(const std::vector<std::string>& arguments, const std::string& message) {
-    const Outcome outcome = taut(arguments);
-    EXPECT_EQ(outcome.code, 2) << outcome.error;
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_THAT(outcome.error, HasSubstr(message));
-    EXPECT_EQ(std::count(outcome.error.begin(), outcome.error.end(), '\n'), 1) << outcome.error;
-  }
-
-  std::string folder(const std::string& name) const { return path(name).string(); }
   const std::vector<std::string> small_{"solve", "hanging_cloth", "--set",     "bodies.cloth.mesh.grid.cells=[6,6]",
                                         "--set", "time.steps=5",  "--threads", "1"};
   std::vector<std::string> small(const std::vector<std::string>& more) const {

@@ -1,5 +1,7 @@
 #include "files/vtu.h"
 
+#include <gmock/gmock.h>
+
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -12,6 +14,29 @@ namespace taut {
 namespace {
 
 using VtuTest = FilesTest;
+
+// As ParaView writes them in the data mode Ascii.
+const std::string ascii_file =
+    R"(<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian" compressor="x">
+  <UnstructuredGrid><Piece NumberOfPoints="3" NumberOfCells="1">
+    <PointData Scalars="id">
+      <DataArray type="Int64" Name="id" format="ascii"> 1 2 3 </DataArray>
+    </PointData>
+    <Points>
+      <DataArray type="Float32" Name="Points" NumberOfComponents="3" format="ascii" RangeMin="0" RangeMax="2.5">
+        0 0 0 1 0 0
+        0.5 1e-3 -2.25
+        <InformationKey name="L2_NORM_RANGE" location="vtkDataArray" length="2"></InformationKey>
+      </DataArray>
+    </Points>
+    <Cells>
+      <DataArray type="Int64" Name="connectivity" format="ascii">0 1 2</DataArray>
+      <DataArray type="Int64" Name="offsets" format="ascii">3</DataArray>
+      <DataArray type="UInt8" Name="types" format="ascii">5</DataArray>
+    </Cells>
+  </Piece></UnstructuredGrid>
+</VTKFile>
+)";
 
 Frame sample() {
   Frame frame;
@@ -138,8 +163,28 @@ TEST_F(VtuTest, ADamagedByteGivesAnErrorOrAFrameButNeverACrash) {
 
 TEST_F(VtuTest, OtherFilesAreRefused) {
   write_atomically(path("f.vtu"), "v 0 0 0\n");
-  EXPECT_EQ(message_of<FileError>([&] { read_vtu(path("f.vtu")); }),
-            path("f.vtu").string() + ": is not a VTU file with raw appended data");
+  EXPECT_EQ(message_of<FileError>([&] { read_vtu(path("f.vtu")); }), path("f.vtu").string() + ": is not a VTU file");
+  const auto refusal = [this](const std::string& text) {
+    write_atomically(path("f.vtu"), text);
+    return message_of<FileError>([&] { read_vtu(path("f.vtu")); });
+  };
+  EXPECT_THAT(refusal("<VTKFile type=\"PolyData\"></VTKFile>"), testing::HasSubstr("not an UnstructuredGrid"));
+  std::string text = ascii_file;
+  text.replace(text.find("ascii", text.find("Name=\"Points\"")), 5, "binary");
+  EXPECT_THAT(refusal(text), testing::HasSubstr("array 'Points' is stored as 'binary', expected ascii or raw"));
+  text = ascii_file;
+  text.replace(text.find("0 0 0"), 5, "0 0 x");
+  EXPECT_THAT(refusal(text), testing::HasSubstr("array 'Points' holds something that is not a number"));
+  text.replace(text.find("0 0 x"), 5, "0 0  ");
+  EXPECT_THAT(refusal(text), testing::HasSubstr("array 'Points' holds 8 numbers, expected 9"));
+}
+
+TEST_F(VtuTest, ReadsTheAsciiFilesOfOtherPrograms) {
+  write_atomically(path("f.vtu"), ascii_file);
+  const Frame frame = read_vtu(path("f.vtu"));
+  EXPECT_EQ(frame.positions, (Vector(9) << 0, 0, 0, 1, 0, 0, 0.5, 1e-3, -2.25).finished());
+  EXPECT_EQ(frame.triangles, (std::vector<Triangle>{{0, 1, 2}}));
+  EXPECT_EQ(frame.point_fields.at(0).values, (std::vector<double>{1, 2, 3}));
 }
 
 TEST_F(VtuTest, ThePvdListsTimesExactly) {

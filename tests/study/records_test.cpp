@@ -26,6 +26,17 @@ StepRecord record(int step, double stationarity, Status status = Status::solved)
   return record;
 }
 
+TEST(StepLine, ComesBack) {
+  StepRecord written = record(3, nan, Status::stalled);
+  written.residuals.violations.push_back({"ball", 0.1, "vertex 3 of cloth", 3});
+  written.energies = {{"kinetic", 0.1 + 0.2}, {"a, \"b\"", nan}};
+  written.penalties = {{"limit", 1e300}};
+  const std::string line = step_line(written);
+  EXPECT_EQ(step_line(parse_step(line)), line);
+  EXPECT_THROW(parse_step(line.substr(1)), std::runtime_error);
+  EXPECT_THROW(parse_step("{}"), std::runtime_error);
+}
+
 TEST(AddStep, KeepsTheWorstOfAllStepsAndSumsTheWork) {
   RunSummary summary;
   for (const StepRecord& r : {record(1, 1e-9), record(2, 1e-7), record(3, 1e-8)}) add_step(summary, r);
