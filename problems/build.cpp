@@ -7,6 +7,7 @@
 #include "problems/body_shape.h"
 #include "problems/build_parts.h"
 #include "solvers/augmented_lagrangian.h"
+#include "solvers/ipopt.h"
 
 namespace taut {
 namespace {
@@ -73,6 +74,19 @@ std::unique_ptr<Solver> build_augmented_lagrangian(const Scene& scene, int threa
   return std::make_unique<AugmentedLagrangian>(options);
 }
 
+std::unique_ptr<Solver> build_ipopt(const Scene& scene) {
+#ifdef TAUT_WITH_IPOPT
+  IpoptOptions options;
+  options.tolerances = scene.solver.tolerance;
+  options.max_iterations = scene.solver.ipopt.max_iterations;
+  options.warm_start = scene.solver.ipopt.warm_start;
+  return std::make_unique<Ipopt>(options);
+#else
+  throw InputError(scene.source, "/solver/method",
+                   "found \"ipopt\", allowed: another one (this program was built without Ipopt)");
+#endif
+}
+
 }  // namespace
 
 std::unique_ptr<Model> build_model(const Scene& scene) {
@@ -121,10 +135,11 @@ std::unique_ptr<Solver> build_solver(const Scene& scene, int threads) {
     case scene::SolverMethod::augmented_lagrangian:
       return build_augmented_lagrangian(scene, threads);
     case scene::SolverMethod::ipopt:
+      return build_ipopt(scene);
     case scene::SolverMethod::nlopt:
       break;
   }
-  throw InputError(scene.source, "/solver/method", "found a solver that this program was built without");
+  throw std::logic_error("build_solver: not a SolverMethod");
 }
 
 }  // namespace taut

@@ -182,6 +182,10 @@ struct Load {
 
 enum class OnFailure { stop, proceed };
 enum class SolverMethod { augmented_lagrangian, ipopt, nlopt };
+struct IpoptSettings {
+  int max_iterations = 500;
+  bool warm_start = true;
+};
 struct Solver {
   SolverMethod method = SolverMethod::augmented_lagrangian;
   Tolerances tolerance;
@@ -191,6 +195,7 @@ struct Solver {
   int max_outer = 100;
   int max_newton = 1000;  ///< per step
   double inner_tolerance_factor = 0.5;
+  IpoptSettings ipopt;
   OnFailure on_failure = OnFailure::stop;
 };
 

@@ -284,6 +284,7 @@ class SceneReader {
     result.max_outer = json["max_outer"];
     result.max_newton = json["max_newton"];
     result.inner_tolerance_factor = json["inner_tolerance_factor"];
+    result.ipopt = {json["ipopt"]["max_iterations"], json["ipopt"]["warm_start"]};
     result.on_failure =
         choose<OnFailure>(json["on_failure"], {{"stop", OnFailure::stop}, {"continue", OnFailure::proceed}});
     return result;
