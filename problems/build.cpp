@@ -8,6 +8,7 @@
 #include "problems/build_parts.h"
 #include "solvers/augmented_lagrangian.h"
 #include "solvers/ipopt.h"
+#include "solvers/nlopt.h"
 
 namespace taut {
 namespace {
@@ -87,6 +88,26 @@ std::unique_ptr<Solver> build_ipopt(const Scene& scene) {
 #endif
 }
 
+std::unique_ptr<Solver> build_nlopt(const Scene& scene) {
+  NloptOptions options;
+  options.tolerances = scene.solver.tolerance;
+  options.algorithm = scene.solver.nlopt.algorithm;
+  options.max_evaluations = scene.solver.nlopt.max_evaluations;
+  return std::make_unique<Nlopt>(options);
+}
+
+/// Only the meshes tell how large the problem is.
+void refuse_more_than_nlopt_takes(const Scene& scene, const Model& model) {
+  if (scene.solver.method != scene::SolverMethod::nlopt) return;
+  const NloptAlgorithm algorithm = scene.solver.nlopt.algorithm;
+  const Index unknowns = model.positions.size() - static_cast<Index>(model.pins.size());
+  if (unknowns <= largest_nlopt_problem(algorithm)) return;
+  throw InputError(scene.source, "/solver/method",
+                   "found \"nlopt\" for " + std::to_string(unknowns) + " unknowns, allowed: at most " +
+                       std::to_string(largest_nlopt_problem(algorithm)) + " with " + std::string(to_string(algorithm)) +
+                       ", beyond which a step takes minutes");
+}
+
 }  // namespace
 
 std::unique_ptr<Model> build_model(const Scene& scene) {
@@ -104,6 +125,7 @@ std::unique_ptr<Model> build_model(const Scene& scene) {
   for (std::size_t k = 0; k < shapes.size(); ++k) add_mesh(scene.bodies[k], shapes[k], *model);
   for (std::size_t k = 0; k < shapes.size(); ++k) add_material(scene.bodies[k], shapes[k], *model);
   add_constraints(scene, shapes, *model);
+  refuse_more_than_nlopt_takes(scene, *model);
   add_loads(scene, shapes, *model);
   return model;
 }
@@ -137,7 +159,7 @@ std::unique_ptr<Solver> build_solver(const Scene& scene, int threads) {
     case scene::SolverMethod::ipopt:
       return build_ipopt(scene);
     case scene::SolverMethod::nlopt:
-      break;
+      return build_nlopt(scene);
   }
   throw std::logic_error("build_solver: not a SolverMethod");
 }

@@ -12,6 +12,7 @@
 #include "core/types.h"
 #include "energies/membrane.h"
 #include "geometry/grid.h"
+#include "solvers/nlopt.h"
 
 namespace taut {
 
@@ -186,6 +187,10 @@ struct IpoptSettings {
   int max_iterations = 500;
   bool warm_start = true;
 };
+struct NloptSettings {
+  NloptAlgorithm algorithm = NloptAlgorithm::slsqp;
+  int max_evaluations = 20000;
+};
 struct Solver {
   SolverMethod method = SolverMethod::augmented_lagrangian;
   Tolerances tolerance;
@@ -196,6 +201,7 @@ struct Solver {
   int max_newton = 1000;  ///< per step
   double inner_tolerance_factor = 0.5;
   IpoptSettings ipopt;
+  NloptSettings nlopt;
   OnFailure on_failure = OnFailure::stop;
 };
 

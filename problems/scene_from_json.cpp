@@ -285,6 +285,13 @@ class SceneReader {
     result.max_newton = json["max_newton"];
     result.inner_tolerance_factor = json["inner_tolerance_factor"];
     result.ipopt = {json["ipopt"]["max_iterations"], json["ipopt"]["warm_start"]};
+    result.nlopt.algorithm =
+        choose<NloptAlgorithm>(json["nlopt"]["algorithm"], {{"slsqp", NloptAlgorithm::slsqp},
+                                                            {"auglag_slsqp", NloptAlgorithm::auglag_slsqp},
+                                                            {"auglag_lbfgs", NloptAlgorithm::auglag_lbfgs},
+                                                            {"auglag_ccsaq", NloptAlgorithm::auglag_ccsaq},
+                                                            {"auglag_tnewton", NloptAlgorithm::auglag_tnewton}});
+    result.nlopt.max_evaluations = json["nlopt"]["max_evaluations"];
     result.on_failure =
         choose<OnFailure>(json["on_failure"], {{"stop", OnFailure::stop}, {"continue", OnFailure::proceed}});
     return result;
