@@ -51,9 +51,9 @@ struct Scaling {
   Vector row;  // factor on each row
 };
 
-Scaling scaling_of(NonlinearProgram& program) {
+Scaling scaling_of(NonlinearProgram& program, const Vector& y) {
   Scaling scaling;
-  scaling.y0 = program.start();
+  scaling.y0 = y;
   const Index n = program.variables();
   Vector gradient, values;
   scaling.f0 = program.gradient(scaling.y0, gradient);
@@ -206,7 +206,8 @@ nlopt_result optimise(const NloptOptions& options, Callbacks& callbacks, Vector&
   };
   add(callbacks.inequalities, nlopt_add_inequality_mconstraint, call_inequalities);
   add(callbacks.equalities, nlopt_add_equality_mconstraint, call_equalities);
-  nlopt_set_maxeval(optimiser.get(), options.max_evaluations);
+  nlopt_set_maxeval(optimiser.get(), std::max(1, options.max_evaluations -
+                                                     static_cast<int>(callbacks.result.counts.function_evaluations)));
   nlopt_set_xtol_abs1(optimiser.get(), accuracy);
   if (chosen.outer != chosen.inner) {
     const Optimiser inner = make(chosen.inner, z.size());
@@ -259,12 +260,12 @@ double merit(const Residuals& r, const Tolerances& t) {
 }
 
 /// Recovers multipliers for several ideas of "active" and keeps those that the residuals like best.
-Residuals judge_best(const Problem& problem, NonlinearProgram& program, const Callbacks& callbacks, const Vector& y,
-                     const Tolerances& tolerances, Result& result) {
+void judge_best(const Problem& problem, NonlinearProgram& program, const Callbacks& callbacks, const Vector& y,
+                const Tolerances& tolerances, Result& result) {
   result.x = program.expand(y);
   result.multipliers = program.multipliers(y, Vector::Zero(program.rows()));
   Residuals best = residuals(problem, result);
-  if (!best.finite || program.rows() == 0) return best;
+  if (!best.finite || program.rows() == 0) return;
   for (double distance : {1e-8, 1e-6, 1e-4}) {
     Result candidate = result;
     candidate.multipliers = program.multipliers(y, recovered(program, callbacks, y, distance));
@@ -273,7 +274,21 @@ Residuals judge_best(const Problem& problem, NonlinearProgram& program, const Ca
     best = judged;
     result.multipliers = std::move(candidate.multipliers);
   }
-  return best;
+}
+
+/// One run of NLopt from y, which it moves to where NLopt ends; x and multipliers of `result` are those there.
+nlopt_result improve(const Problem& problem, NonlinearProgram& program, const NloptOptions& options,
+                     const Budget& budget, Vector& y, Result& result) {
+  const Scaling scaling = scaling_of(program, y);
+  Callbacks callbacks{program, scaling, budget, result};
+  split_bounds(program, callbacks);
+  Vector z = Vector::Zero(program.variables());
+  nlopt_result code = NLOPT_SUCCESS;
+  const bool finite = std::isfinite(scaling.f0) && scaling.d.allFinite() && scaling.row.allFinite();
+  if (program.variables() > 0 && finite) code = optimise(options, callbacks, z);
+  y = callbacks.unscaled(z.data());
+  judge_best(problem, program, callbacks, y, options.tolerances, result);
+  return code;
 }
 
 void say_unsolved(nlopt_result code, const Budget& budget, Result& result) {
@@ -314,19 +329,30 @@ Result Nlopt::solve(const Problem& problem, const WarmStart& /*warm*/, const Bud
   {
     const Stopwatch watch(total);
     NonlinearProgram program(problem);
-    const Scaling scaling = scaling_of(program);
-    Callbacks callbacks{program, scaling, budget, result};
-    split_bounds(program, callbacks);
-    Vector z = Vector::Zero(unknowns);
     nlopt_result code = NLOPT_SUCCESS;
-    const bool finite = std::isfinite(scaling.f0) && scaling.d.allFinite();
-    if (unknowns > 0 && finite) code = optimise(options_, callbacks, z);
-    const Residuals judged =
-        judge_best(problem, program, callbacks, callbacks.unscaled(z.data()), options_.tolerances, result);
-    if (judged.within(options_.tolerances)) {
+    Vector y = program.start();
+    double best = std::numeric_limits<double>::infinity();
+    for (;;) {
+      Result attempt;
+      attempt.counts = result.counts;
+      attempt.timings = result.timings;
+      code = improve(problem, program, options_, budget, y, attempt);
+      const double reached = merit(residuals(problem, attempt), options_.tolerances);
+      const bool better = reached < 0.5 * best || result.x.size() == 0;
+      result.counts = attempt.counts;
+      result.timings = attempt.timings;
+      if (reached < best || result.x.size() == 0) {
+        result.x = std::move(attempt.x);
+        result.multipliers = std::move(attempt.multipliers);
+        best = reached;
+      }
+      if (best <= 1 || !better || !std::isfinite(best) || code == NLOPT_FORCED_STOP || code == NLOPT_MAXEVAL_REACHED)
+        break;
+    }
+    if (best <= 1) {
       result.status = Status::solved;
       result.message = "residuals within tolerance";
-    } else if (!judged.finite) {
+    } else if (!std::isfinite(best)) {
       result.status = Status::not_finite;
       result.message = "a value or derivative is not finite";
     } else {

@@ -29,6 +29,8 @@ struct NloptOptions {
 /// (f'_i)^2/f''_ii at the start: the Hessian has a unit diagonal and the largest slope is 1. Rows of the constraints
 /// are divided by the norm of their gradient in z there.
 ///
+/// Where the result is not solved, NLopt starts again there, scaled anew, as long as that halves the worst residual.
+///
 /// It returns no multipliers: they are recovered as the least-squares solution of f' + J^T nu = 0 on the rows that are
 /// nearly active, with their signs. Its return codes decide nothing, since it calls a NaN a success and good points
 /// failures: `solved` is said by residuals(), and what is not solved is `stalled` unless a limit was hit. It does not
