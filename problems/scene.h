@@ -185,7 +185,7 @@ enum class OnFailure { stop, proceed };
 enum class SolverMethod { augmented_lagrangian, ipopt, nlopt };
 struct IpoptSettings {
   int max_iterations = 500;
-  bool warm_start = true;
+  bool warm_start = false;
 };
 struct NloptSettings {
   NloptAlgorithm algorithm = NloptAlgorithm::slsqp;

@@ -26,11 +26,11 @@ struct Entry {
   int largest;
 };
 constexpr std::array<Entry, 5> algorithms{{
-    {NloptAlgorithm::slsqp, "slsqp", NLOPT_LD_SLSQP, NLOPT_LD_SLSQP, 1000},
-    {NloptAlgorithm::auglag_slsqp, "auglag_slsqp", NLOPT_AUGLAG, NLOPT_LD_SLSQP, 1000},
-    {NloptAlgorithm::auglag_lbfgs, "auglag_lbfgs", NLOPT_AUGLAG, NLOPT_LD_LBFGS, 1000},
-    {NloptAlgorithm::auglag_ccsaq, "auglag_ccsaq", NLOPT_AUGLAG, NLOPT_LD_CCSAQ, 1000},
-    {NloptAlgorithm::auglag_tnewton, "auglag_tnewton", NLOPT_AUGLAG, NLOPT_LD_TNEWTON_PRECOND_RESTART, 1000},
+    {NloptAlgorithm::slsqp, "slsqp", NLOPT_LD_SLSQP, NLOPT_LD_SLSQP, 600},
+    {NloptAlgorithm::auglag_slsqp, "auglag_slsqp", NLOPT_AUGLAG, NLOPT_LD_SLSQP, 600},
+    {NloptAlgorithm::auglag_lbfgs, "auglag_lbfgs", NLOPT_AUGLAG, NLOPT_LD_LBFGS, 600},
+    {NloptAlgorithm::auglag_ccsaq, "auglag_ccsaq", NLOPT_AUGLAG, NLOPT_LD_CCSAQ, 600},
+    {NloptAlgorithm::auglag_tnewton, "auglag_tnewton", NLOPT_AUGLAG, NLOPT_LD_TNEWTON_PRECOND_RESTART, 600},
 }};
 
 const Entry& entry(NloptAlgorithm algorithm) {

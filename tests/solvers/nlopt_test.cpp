@@ -38,7 +38,7 @@ TEST_P(NloptAgrees, WithTheAugmentedLagrangianOnEveryStepFromTheSameStates) {
   EXPECT_GT(largest, 1e-3) << "the constraint never acted";
 }
 
-INSTANTIATE_TEST_SUITE_P(, NloptAgrees, testing::Values("matrix_limit", "upper_matrix_limit", "half_space", "sphere"),
+INSTANTIATE_TEST_SUITE_P(, NloptAgrees, testing::Values("matrix_limit", "half_space", "sphere"),
                          [](const auto& kind) { return std::string(kind.param); });
 
 class EveryNloptAlgorithm : public testing::TestWithParam<NloptAlgorithm> {};
@@ -98,6 +98,25 @@ TEST(Nlopt, CallsNothingSolvedThatIsNotFinite) {
   SmallCloth cloth(small_cloth_constraint("matrix_limit"));
   cloth.owned.add(std::shared_ptr<const Energy>(std::make_shared<NotANumber>(*cloth.inertia)));
   EXPECT_EQ(Nlopt().solve(cloth.owned.problem, {}, {}).status, Status::not_finite);
+}
+
+TEST(Nlopt, ItsClaimOfSuccessIsNotPassedOn) {
+  // Limits that hold nearly everything in both directions: where both eigenvalues meet the limit the rows of the smooth
+  // form have no constraint qualification, and SLSQP ends with a success code short of a solution.
+  SmallCloth cloth(small_cloth_constraint("upper_matrix_limit"));
+  AugmentedLagrangian augmented_lagrangian;
+  WarmStart warm;
+  int false_successes = 0;
+  for (int step = 0; step < 8; ++step) {
+    const Result result = Nlopt().solve(cloth.owned.problem, {}, {});
+    const bool solved = residuals(cloth.owned.problem, result).within(NloptOptions().tolerances);
+    EXPECT_EQ(result.status == Status::solved, solved) << result.message;
+    if (!solved && result.message.find("REACHED, the residuals do not agree") != std::string::npos) ++false_successes;
+    const Result other = augmented_lagrangian.solve(cloth.owned.problem, warm, {});
+    warm = {other.multipliers, other.penalties};
+    cloth.accept(other.x);
+  }
+  EXPECT_GT(false_successes, 0);
 }
 
 TEST(Nlopt, NamesTheLimitItRanInto) {
