@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "solvers/augmented_lagrangian.h"
-#include "solvers/small_cloth.h"
+#include "support/small_cloth.h"
 
 namespace taut {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "solvers/augmented_lagrangian.h"
 #include "solvers/nonnegative_least_squares.h"
-#include "solvers/small_cloth.h"
 #include "support/random_values.h"
+#include "support/small_cloth.h"
 
 namespace taut {
 namespace {
