@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -69,8 +70,27 @@ void Box::project_smoothed(Index /*element*/, const double* z, double epsilon, d
   }
 }
 
-SpectralBox::SpectralBox(double lower, double upper) : lower_(lower), upper_(upper) {
+void Box::smooth_bounds(double* lower, double* upper) const {
+  std::fill_n(lower, dimension_, lower_);
+  std::fill_n(upper, dimension_, upper_);
+}
+
+void Box::smooth_values(Index /*element*/, const double* z, double* g, double* jacobian) const {
+  std::copy_n(z, dimension_, g);
+  if (jacobian) Eigen::Map<Matrix>(jacobian, dimension_, dimension_).setIdentity();
+}
+
+void Box::smooth_hessian(Index /*element*/, const double* /*z*/, const double* /*weights*/, double* hessian) const {
+  std::fill_n(hessian, dimension_ * dimension_, 0.0);
+}
+
+SpectralBox::SpectralBox(double lower, double upper)
+    : lower_(lower),
+      upper_(upper),
+      smooth_scale_(
+          std::max(std::isfinite(lower) ? std::abs(lower) : 0.0, std::isfinite(upper) ? std::abs(upper) : 0.0)) {
   check_bounds("SpectralBox", lower, upper);
+  if (smooth_scale_ == 0) smooth_scale_ = 1;
 }
 
 void SpectralBox::project(Index /*element*/, const double* z, double* nearest, double* derivative) const {
@@ -113,6 +133,57 @@ void SpectralBox::project_smoothed(Index /*element*/, const double* z, double ep
   Eigen::Map<Vector3>{rate} = -s1.rate * e1 - s2.rate * e2;
   const Vector3 f1 = e1 / s1.slope, f2 = e2 / s2.slope, f12 = e12 / omega;
   Eigen::Map<Matrix3>{inverse} = f1 * e1.transpose() + f2 * e2.transpose() + f12 * e12.transpose();
+}
+
+int SpectralBox::smooth_rows() const {
+  if (lower_ == upper_) return 3;
+  return (std::isfinite(lower_) ? 2 : 0) + (std::isfinite(upper_) ? 2 : 0);
+}
+
+void SpectralBox::smooth_bounds(double* lower, double* upper) const {
+  if (lower_ == upper_) {
+    const Vector3 point = Vector3(lower_, 0, lower_) / smooth_scale_;
+    Eigen::Map<Vector3>{lower} = point;
+    Eigen::Map<Vector3>{upper} = point;
+    return;
+  }
+  std::fill_n(lower, smooth_rows(), 0.0);
+  std::fill_n(upper, smooth_rows(), std::numeric_limits<double>::infinity());
+}
+
+void SpectralBox::smooth_values(Index /*element*/, const double* z, double* g, double* jacobian) const {
+  const double s = smooth_scale_;
+  if (lower_ == upper_) {
+    for (int i = 0; i < 3; ++i) g[i] = z[i] / s;
+    if (jacobian) Eigen::Map<Matrix3>{jacobian} = Matrix3::Identity() / s;
+    return;
+  }
+  const int rows = smooth_rows();
+  int row = 0;
+  // A = sign (z - limit I)/s has the diagonal (a, c) and the square of its off-diagonal z1^2/(2 s^2).
+  const auto add = [&](double limit, double sign) {
+    const double a = sign * (z[0] - limit) / s, c = sign * (z[2] - limit) / s, b = z[1] / s;
+    g[row] = a + c;
+    g[row + 1] = a * c - 0.5 * b * b;
+    if (jacobian) {
+      Eigen::Map<Matrix> j(jacobian, rows, 3);
+      j.row(row) << sign / s, 0.0, sign / s;
+      j.row(row + 1) << sign * c / s, -b / s, sign * a / s;
+    }
+    row += 2;
+  };
+  if (std::isfinite(upper_)) add(upper_, -1);
+  if (std::isfinite(lower_)) add(lower_, 1);
+}
+
+void SpectralBox::smooth_hessian(Index /*element*/, const double* /*z*/, const double* weights, double* hessian) const {
+  Eigen::Map<Matrix3> h(hessian);
+  h.setZero();
+  if (lower_ == upper_) return;
+  double determinants = 0;
+  for (int row = 1; row < smooth_rows(); row += 2) determinants += weights[row];
+  h(0, 2) = h(2, 0) = determinants / (smooth_scale_ * smooth_scale_);
+  h(1, 1) = -h(0, 2);
 }
 
 }  // namespace taut

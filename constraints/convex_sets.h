@@ -13,6 +13,10 @@ class Box final : public ConvexSet {
   void project(Index element, const double* z, double* nearest, double* derivative) const override;
   void project_smoothed(Index element, const double* z, double epsilon, double* nearest, double* inverse,
                         double* rate) const override;
+  int smooth_rows() const override { return dimension_; }
+  void smooth_bounds(double* lower, double* upper) const override;
+  void smooth_values(Index element, const double* z, double* g, double* jacobian) const override;
+  void smooth_hessian(Index element, const double* z, const double* weights, double* hessian) const override;
 
  private:
   int dimension_;
@@ -29,9 +33,18 @@ class SpectralBox final : public ConvexSet {
   void project(Index element, const double* z, double* nearest, double* derivative) const override;
   void project_smoothed(Index element, const double* z, double epsilon, double* nearest, double* inverse,
                         double* rate) const override;
+  /// Each finite limit gives tr A >= 0 and det A >= 0, with A = (upper I - z)/s or (z - lower I)/s and s the larger of
+  /// the finite |limits|: rows of order one. Equal limits give the three equations z = lower I instead. Where both
+  /// eigenvalues are at the same limit, the gradient of det A vanishes and no constraint qualification holds: only
+  /// multiples of I are multipliers there, and near there the multiplier of det A grows like 1/(the smaller gap).
+  int smooth_rows() const override;
+  void smooth_bounds(double* lower, double* upper) const override;
+  void smooth_values(Index element, const double* z, double* g, double* jacobian) const override;
+  void smooth_hessian(Index element, const double* z, const double* weights, double* hessian) const override;
 
  private:
   double lower_, upper_;
+  double smooth_scale_;  ///< s of the smooth rows
 };
 
 }  // namespace taut

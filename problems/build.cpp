@@ -7,6 +7,8 @@
 #include "problems/body_shape.h"
 #include "problems/build_parts.h"
 #include "solvers/augmented_lagrangian.h"
+#include "solvers/ipopt.h"
+#include "solvers/nlopt.h"
 
 namespace taut {
 namespace {
@@ -54,6 +56,58 @@ void add_material(const scene::Body& body, const BodyShape& shape, Model& model)
   }
 }
 
+std::unique_ptr<Solver> build_augmented_lagrangian(const Scene& scene, int threads) {
+  AugmentedLagrangianOptions options;
+  options.tolerances = scene.solver.tolerance;
+  // Measured: with obstacles the path takes 2 to 7 times the linear solves of the loop of multiplier updates.
+  const bool obstacles =
+      std::any_of(scene.constraints.begin(), scene.constraints.end(), [](const scene::Constraint& constraint) {
+        return std::holds_alternative<scene::HalfSpace>(constraint.kind) ||
+               std::holds_alternative<scene::Sphere>(constraint.kind);
+      });
+  options.central_path.enabled = scene.solver.central_path && !obstacles;
+  options.penalty = scene.solver.penalty;
+  options.penalty_growth = scene.solver.penalty_growth;
+  options.inner_tolerance_factor = scene.solver.inner_tolerance_factor;
+  options.max_outer = scene.solver.max_outer;
+  options.max_newton = scene.solver.max_newton;
+  options.threads = threads;
+  return std::make_unique<AugmentedLagrangian>(options);
+}
+
+std::unique_ptr<Solver> build_ipopt(const Scene& scene) {
+#ifdef TAUT_WITH_IPOPT
+  IpoptOptions options;
+  options.tolerances = scene.solver.tolerance;
+  options.max_iterations = scene.solver.ipopt.max_iterations;
+  options.warm_start = scene.solver.ipopt.warm_start;
+  return std::make_unique<Ipopt>(options);
+#else
+  throw InputError(scene.source, "/solver/method",
+                   "found \"ipopt\", allowed: another one (this program was built without Ipopt)");
+#endif
+}
+
+std::unique_ptr<Solver> build_nlopt(const Scene& scene) {
+  NloptOptions options;
+  options.tolerances = scene.solver.tolerance;
+  options.algorithm = scene.solver.nlopt.algorithm;
+  options.max_evaluations = scene.solver.nlopt.max_evaluations;
+  return std::make_unique<Nlopt>(options);
+}
+
+/// Only the meshes tell how large the problem is.
+void refuse_more_than_nlopt_takes(const Scene& scene, const Model& model) {
+  if (scene.solver.method != scene::SolverMethod::nlopt) return;
+  const NloptAlgorithm algorithm = scene.solver.nlopt.algorithm;
+  const Index unknowns = model.positions.size() - static_cast<Index>(model.pins.size());
+  if (unknowns <= largest_nlopt_problem(algorithm)) return;
+  throw InputError(scene.source, "/solver/method",
+                   "found \"nlopt\" for " + std::to_string(unknowns) + " unknowns, allowed: at most " +
+                       std::to_string(largest_nlopt_problem(algorithm)) + " with " + std::string(to_string(algorithm)) +
+                       ", beyond which a step takes minutes");
+}
+
 }  // namespace
 
 std::unique_ptr<Model> build_model(const Scene& scene) {
@@ -71,6 +125,7 @@ std::unique_ptr<Model> build_model(const Scene& scene) {
   for (std::size_t k = 0; k < shapes.size(); ++k) add_mesh(scene.bodies[k], shapes[k], *model);
   for (std::size_t k = 0; k < shapes.size(); ++k) add_material(scene.bodies[k], shapes[k], *model);
   add_constraints(scene, shapes, *model);
+  refuse_more_than_nlopt_takes(scene, *model);
   add_loads(scene, shapes, *model);
   return model;
 }
@@ -98,22 +153,15 @@ TimeOptions time_options(const Scene& scene) {
 }
 
 std::unique_ptr<Solver> build_solver(const Scene& scene, int threads) {
-  AugmentedLagrangianOptions options;
-  options.tolerances = scene.solver.tolerance;
-  // Measured: with obstacles the path takes 2 to 7 times the linear solves of the loop of multiplier updates.
-  const bool obstacles =
-      std::any_of(scene.constraints.begin(), scene.constraints.end(), [](const scene::Constraint& constraint) {
-        return std::holds_alternative<scene::HalfSpace>(constraint.kind) ||
-               std::holds_alternative<scene::Sphere>(constraint.kind);
-      });
-  options.central_path.enabled = scene.solver.central_path && !obstacles;
-  options.penalty = scene.solver.penalty;
-  options.penalty_growth = scene.solver.penalty_growth;
-  options.inner_tolerance_factor = scene.solver.inner_tolerance_factor;
-  options.max_outer = scene.solver.max_outer;
-  options.max_newton = scene.solver.max_newton;
-  options.threads = threads;
-  return std::make_unique<AugmentedLagrangian>(options);
+  switch (scene.solver.method) {
+    case scene::SolverMethod::augmented_lagrangian:
+      return build_augmented_lagrangian(scene, threads);
+    case scene::SolverMethod::ipopt:
+      return build_ipopt(scene);
+    case scene::SolverMethod::nlopt:
+      return build_nlopt(scene);
+  }
+  throw std::logic_error("build_solver: not a SolverMethod");
 }
 
 }  // namespace taut

@@ -12,6 +12,7 @@
 #include "core/types.h"
 #include "energies/membrane.h"
 #include "geometry/grid.h"
+#include "solvers/nlopt.h"
 
 namespace taut {
 
@@ -181,7 +182,17 @@ struct Load {
 };
 
 enum class OnFailure { stop, proceed };
+enum class SolverMethod { augmented_lagrangian, ipopt, nlopt };
+struct IpoptSettings {
+  int max_iterations = 500;
+  bool warm_start = false;
+};
+struct NloptSettings {
+  NloptAlgorithm algorithm = NloptAlgorithm::slsqp;
+  int max_evaluations = 20000;
+};
 struct Solver {
+  SolverMethod method = SolverMethod::augmented_lagrangian;
   Tolerances tolerance;
   bool central_path = true;
   double penalty = 1000;  ///< factor on the automatic first penalty
@@ -189,6 +200,8 @@ struct Solver {
   int max_outer = 100;
   int max_newton = 1000;  ///< per step
   double inner_tolerance_factor = 0.5;
+  IpoptSettings ipopt;
+  NloptSettings nlopt;
   OnFailure on_failure = OnFailure::stop;
 };
 

@@ -273,6 +273,9 @@ class SceneReader {
 
   static scene::Solver solver(const Json& json) {
     scene::Solver result;
+    result.method = choose<SolverMethod>(json["method"], {{"augmented_lagrangian", SolverMethod::augmented_lagrangian},
+                                                          {"ipopt", SolverMethod::ipopt},
+                                                          {"nlopt", SolverMethod::nlopt}});
     const Json& tolerance = json["tolerance"];
     result.tolerance = {tolerance["stationarity"], tolerance["feasibility"], tolerance["complementarity"]};
     result.central_path = json["central_path"];
@@ -281,6 +284,14 @@ class SceneReader {
     result.max_outer = json["max_outer"];
     result.max_newton = json["max_newton"];
     result.inner_tolerance_factor = json["inner_tolerance_factor"];
+    result.ipopt = {json["ipopt"]["max_iterations"], json["ipopt"]["warm_start"]};
+    result.nlopt.algorithm =
+        choose<NloptAlgorithm>(json["nlopt"]["algorithm"], {{"slsqp", NloptAlgorithm::slsqp},
+                                                            {"auglag_slsqp", NloptAlgorithm::auglag_slsqp},
+                                                            {"auglag_lbfgs", NloptAlgorithm::auglag_lbfgs},
+                                                            {"auglag_ccsaq", NloptAlgorithm::auglag_ccsaq},
+                                                            {"auglag_tnewton", NloptAlgorithm::auglag_tnewton}});
+    result.nlopt.max_evaluations = json["nlopt"]["max_evaluations"];
     result.on_failure =
         choose<OnFailure>(json["on_failure"], {{"stop", OnFailure::stop}, {"continue", OnFailure::proceed}});
     return result;

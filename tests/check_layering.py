@@ -40,6 +40,8 @@ THIRD_PARTY = [
     ("omp.h", ("src/linalg/*.cpp",)),
     ("tbb/*", ("src/core/*.cpp",)),
     ("oneapi/*", ("src/core/*.cpp",)),
+    ("Ip[A-Z]*.hpp", ("solvers/ipopt.cpp",)),
+    ("nlopt.h", ("solvers/nlopt.cpp",)),
     ("CLI/*", ("src/cli/*.cpp",)),
     ("spdlog/*", ("src/cli/*.cpp",)),
     ("nlohmann/json_fwd.hpp", JSON_USERS + ("problems/*.h", "src/files/*.h", "src/study/*.h", "src/report/*.h", "src/cli/*.h")),

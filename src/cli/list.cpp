@@ -39,7 +39,10 @@ Lines solvers() {
   return {
       {"augmented_lagrangian",
        "slacks eliminated by projection, semismooth Newton inside, sparse Cholesky; multipliers carried from step to "
-       "step"}};
+       "step"},
+      {"ipopt",
+       "Ipopt's interior-point method on a smooth scalar form of the constraints, with exact second derivatives"},
+      {"nlopt", "algorithms of NLopt (key: solver.nlopt.algorithm) on the same form; small problems only"}};
 }
 
 Lines energies() {

@@ -25,6 +25,17 @@ class ConvexSet {
   /// Kanzow 1996; Smale 1987]
   virtual void project_smoothed(Index element, const double* z, double epsilon, double* nearest, double* inverse,
                                 double* rate) const = 0;
+
+  /// The same set as smooth scalar rows lower_i <= g_i(z) <= upper_i, for solvers that know nothing else. The rows may
+  /// be as many as their implementer likes up to max_smooth_rows, and need a constraint qualification that the set
+  /// itself does not; an implementation says where it fails.
+  virtual int smooth_rows() const = 0;
+  /// `smooth_rows()` doubles each, infinite where there is no bound.
+  virtual void smooth_bounds(double* lower, double* upper) const = 0;
+  /// g at z and, where not null, its Jacobian (smooth_rows() x dimension(), column-major).
+  virtual void smooth_values(Index element, const double* z, double* g, double* jacobian) const = 0;
+  /// sum_i weights[i] g_i''(z) (dimension() x dimension(), column-major, overwritten).
+  virtual void smooth_hessian(Index element, const double* z, const double* weights, double* hessian) const = 0;
 };
 
 }  // namespace taut

@@ -37,5 +37,7 @@ class Stencils {
 inline constexpr int max_stencil_width = 24;
 /// No constraint has more rows per element than this.
 inline constexpr int max_rows = 6;
+/// No convex set has more smooth scalar rows (ConvexSet::smooth_rows).
+inline constexpr int max_smooth_rows = 6;
 
 }  // namespace taut

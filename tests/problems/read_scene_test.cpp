@@ -72,6 +72,11 @@ TEST_F(ReadScene, DefaultsAreThoseOfTheStructs) {
   EXPECT_EQ(scene.solver.max_newton, defaults.max_newton);
   EXPECT_EQ(scene.solver.inner_tolerance_factor, defaults.inner_tolerance_factor);
   EXPECT_EQ(scene.solver.on_failure, defaults.on_failure);
+  EXPECT_EQ(scene.solver.method, defaults.method);
+  EXPECT_EQ(scene.solver.ipopt.max_iterations, defaults.ipopt.max_iterations);
+  EXPECT_EQ(scene.solver.ipopt.warm_start, defaults.ipopt.warm_start);
+  EXPECT_EQ(scene.solver.nlopt.algorithm, defaults.nlopt.algorithm);
+  EXPECT_EQ(scene.solver.nlopt.max_evaluations, defaults.nlopt.max_evaluations);
   EXPECT_EQ(scene.output.every, Output().every);
   EXPECT_EQ(scene.output.pictures, Output().pictures);
   EXPECT_FALSE(scene.output.view);
