@@ -1,24 +1,23 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/progress.h"
+#include "cli/stop_signals.h"
 #include "problems/read_scene.h"
 #include "report/terminal_summary.h"
 #include "study/records_json.h"
 #include "study/run.h"
 
 namespace taut {
-namespace fs = std::filesystem;
 namespace {
 
 struct SolveArguments {
@@ -29,42 +28,8 @@ struct SolveArguments {
   bool resume = false, json = false, quiet = false;
 };
 
-std::atomic<bool> stop_requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler stores to it");
-
-extern "C" void request_stop(int) {
-  // The second time nobody wants to wait for the checkpoint.
-  if (stop_requested.exchange(true)) ::_exit(exit_interrupted);
-}
-
-void install_signal_handlers() {
-  struct sigaction action {};
-  action.sa_handler = request_stop;
-  action.sa_flags = SA_RESTART;
-  ::sigemptyset(&action.sa_mask);
-  ::sigaction(SIGINT, &action, nullptr);
-  ::sigaction(SIGTERM, &action, nullptr);
-}
-
-/// A file, or else the name of a problem in the catalogue.
-fs::path find_problem(const std::string& problem) {
-  std::error_code error;
-  if (fs::is_regular_file(problem, error)) return problem;
-  const bool is_name = problem.find_first_of("/.") == problem.npos;
-  const fs::path listed = catalogue_folder() / (problem + ".json");
-  if (is_name && fs::is_regular_file(listed, error)) return listed;
-  throw UsageError(
-      problem + (is_name ? ": no such file, and no problem of the catalogue (taut list problems)" : ": no such file"));
-}
-
 Overrides overrides_of(const SolveArguments& arguments) {
-  Overrides overrides;
-  for (const std::string& setting : arguments.settings) {
-    const std::size_t equals = setting.find('=');
-    if (equals == setting.npos || equals == 0)
-      throw UsageError("--set " + setting + ": expected KEY=VALUE, as in time.steps=10");
-    overrides.emplace_back(setting.substr(0, equals), setting.substr(equals + 1));
-  }
+  Overrides overrides = parse_settings(arguments.settings);
   if (!arguments.format.empty()) overrides.emplace_back("output.format", arguments.format);
   return overrides;
 }
@@ -82,7 +47,7 @@ int exit_code(Status status) {
 int solve(const SolveArguments& arguments) {
   if (arguments.resume && arguments.out.empty())
     throw UsageError("--resume needs --out DIR, the directory of the run to go on with");
-  install_signal_handlers();
+  const std::atomic<bool>& stop_requested = stop_on_signals();
   const Scene scene = read_scene(find_problem(arguments.problem), overrides_of(arguments));
 
   std::unique_ptr<Progress> progress;

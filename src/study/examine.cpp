@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 
 #include "constraints/obstacle.h"
 #include "geometry/distance.h"
@@ -96,6 +97,19 @@ std::string vertex_name(const Model& model, Index vertex) {
     }
   }
   return "vertex " + std::to_string(vertex);
+}
+
+void name_for_people(Residuals& residuals, const Problem& problem, const Model& model) {
+  constexpr std::string_view prefix = "vertex ";
+  if (residuals.worst_node.starts_with(prefix)) {
+    residuals.worst_node = vertex_name(model, std::stol(residuals.worst_node.substr(prefix.size())));
+  }
+  if (problem.fixed_variables.empty()) return;
+  Violation& pins = residuals.violations.back();
+  if (pins.element >= 0) pins.where = vertex_name(model, pins.element);
+  for (const Constraint* constraint : problem.constraints) {
+    if (constraint->name() == pins.constraint) pins.constraint += " (held vertices)";
+  }
 }
 
 }  // namespace taut

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/problem.h"
+#include "core/residuals.h"
 #include "dynamics/model.h"
 #include "study/records.h"
 
@@ -22,5 +23,8 @@ std::vector<WorstElement> worst_elements(const Problem& problem, const Vector& x
 
 /// "vertex 3 of cloth" for a vertex of the scene.
 std::string vertex_name(const Model& model, Index vertex);
+
+/// The judge speaks of scene vertices and of "pins"; people know bodies, and may have called a constraint so.
+void name_for_people(Residuals& residuals, const Problem& problem, const Model& model);
 
 }  // namespace taut

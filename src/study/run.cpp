@@ -39,20 +39,6 @@ Budget budget_of(const RunOptions& options) {
   return budget;
 }
 
-/// The judge speaks of scene vertices and of "pins"; people know bodies, and may have called a constraint so.
-void name_for_people(Residuals& residuals, const Problem& problem, const Model& model) {
-  constexpr std::string_view prefix = "vertex ";
-  if (residuals.worst_node.starts_with(prefix)) {
-    residuals.worst_node = vertex_name(model, std::stol(residuals.worst_node.substr(prefix.size())));
-  }
-  if (problem.fixed_variables.empty()) return;
-  Violation& pins = residuals.violations.back();
-  if (pins.element >= 0) pins.where = vertex_name(model, pins.element);
-  for (const Constraint* constraint : problem.constraints) {
-    if (constraint->name() == pins.constraint) pins.constraint += " (held vertices)";
-  }
-}
-
 class Run {
  public:
   Run(const Scene& scene, const RunOptions& options)

@@ -7,6 +7,7 @@
 #include "files/checkpoint.h"
 #include "study/frame_output.h"
 #include "study/records_json.h"
+#include "study/state_arrays.h"
 
 namespace taut {
 namespace fs = std::filesystem;
@@ -16,47 +17,6 @@ constexpr const char* checkpoint_file = "checkpoint.bin";
 constexpr const char* summary_file = "summary.json";
 constexpr const char* steps_file = "steps.jsonl";
 constexpr const char* problem_file = "problem.json";
-
-using Arrays = std::map<std::string, std::vector<double>>;
-
-std::vector<double> array(const Vector& vector) { return {vector.begin(), vector.end()}; }
-Vector vector(const std::vector<double>& array) {
-  return Eigen::Map<const Vector>(array.data(), static_cast<Index>(array.size()));
-}
-
-Arrays to_arrays(const State& state) {
-  // A structured binding, so that a member that State gains cannot be forgotten here.
-  const auto& [step, positions, velocities, accelerations, previous_positions, previous_velocities,
-               auxiliary_accelerations, warm] = state;
-  Arrays arrays{{"positions", array(positions)},
-                {"velocities", array(velocities)},
-                {"accelerations", array(accelerations)},
-                {"previous_positions", array(previous_positions)},
-                {"previous_velocities", array(previous_velocities)},
-                {"auxiliary_accelerations", array(auxiliary_accelerations)},
-                {"penalties", warm.penalties}};
-  for (std::size_t k = 0; k < warm.multipliers.size(); ++k) {
-    arrays["multipliers " + std::to_string(k)] = array(warm.multipliers[k]);
-  }
-  return arrays;
-}
-
-State to_state(int step, const Arrays& arrays) {
-  const auto read = [&arrays](const char* name) { return vector(arrays.at(name)); };
-  State state{step,
-              read("positions"),
-              read("velocities"),
-              read("accelerations"),
-              read("previous_positions"),
-              read("previous_velocities"),
-              read("auxiliary_accelerations"),
-              {{}, arrays.at("penalties")}};
-  for (std::size_t k = 0;; ++k) {
-    const auto found = arrays.find("multipliers " + std::to_string(k));
-    if (found == arrays.end()) return state;
-    state.warm.multipliers.push_back(vector(found->second));
-  }
-}
 
 bool is_empty_or_missing(const fs::path& folder) {
   std::error_code error;
@@ -112,7 +72,7 @@ std::optional<Continuation> RunFolder::continuation(const Scene& scene, int thre
     throw RunRefused(path_.string() + ": was run with " + std::to_string(from.threads) + " threads, not " +
                      std::to_string(threads) + "; another number gives other bits");
   }
-  from.state = to_state(static_cast<int>(checkpoint.step), checkpoint.arrays);
+  from.state = state_from(static_cast<int>(checkpoint.step), checkpoint.arrays);
   from.summary = parse_summary(checkpoint.texts.at("summary"));
   return from;
 } catch (const RunRefused&) {
@@ -148,7 +108,7 @@ void RunFolder::write_checkpoint(const std::string& input_hash, const Continuati
 }
 
 void RunFolder::replace_checkpoint(const std::string& input_hash, const Continuation& now) const {
-  Checkpoint checkpoint{input_hash, now.state.step, to_arrays(now.state), {}};
+  Checkpoint checkpoint{input_hash, now.state.step, state_arrays(now.state), {}};
   checkpoint.texts["finished"] = now.finished ? "yes" : "no";
   checkpoint.texts["threads"] = std::to_string(now.threads);
   checkpoint.texts["summary"] = summary_text(now.summary);
