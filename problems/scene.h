@@ -181,7 +181,9 @@ struct Load {
 };
 
 enum class OnFailure { stop, proceed };
+enum class SolverMethod { augmented_lagrangian, ipopt, nlopt };
 struct Solver {
+  SolverMethod method = SolverMethod::augmented_lagrangian;
   Tolerances tolerance;
   bool central_path = true;
   double penalty = 1000;  ///< factor on the automatic first penalty

@@ -273,6 +273,9 @@ class SceneReader {
 
   static scene::Solver solver(const Json& json) {
     scene::Solver result;
+    result.method = choose<SolverMethod>(json["method"], {{"augmented_lagrangian", SolverMethod::augmented_lagrangian},
+                                                          {"ipopt", SolverMethod::ipopt},
+                                                          {"nlopt", SolverMethod::nlopt}});
     const Json& tolerance = json["tolerance"];
     result.tolerance = {tolerance["stationarity"], tolerance["feasibility"], tolerance["complementarity"]};
     result.central_path = json["central_path"];
