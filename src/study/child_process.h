@@ -32,8 +32,8 @@ struct ChildOutcome {
 
 /// Runs a command to its end, with nothing to read and its output and errors in the file `log`. The child is the head
 /// of a process group of its own, so that Ctrl-C reaches it only through `stop`, and whatever it has started ends with
-/// it; it also ends where this process dies. Throws std::runtime_error where no process can be made, std::invalid_argument for an
-/// empty command.
+/// it; it also ends where this process dies. Throws std::runtime_error where no process can be made,
+/// std::invalid_argument for an empty command.
 ChildOutcome run_child(const std::vector<std::string>& command, const std::filesystem::path& log,
                        const ChildLimits& limits, const std::atomic<bool>* stop = nullptr);
 

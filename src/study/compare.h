@@ -26,8 +26,8 @@ struct CompareOptions {
   std::filesystem::path folder;         ///< where everything is written
   std::vector<std::string> worker;      ///< command that carries out a job whose file is appended to it
   const std::atomic<bool>* stop = nullptr;
-  std::string version;                                  ///< of the calling program
-  std::function<void(int processes)> on_start;          ///< before the first process
+  std::string version;                                   ///< of the calling program
+  std::function<void(int processes)> on_start;           ///< before the first process
   std::function<void(const EntryRun& finished)> on_run;  ///< after each process, trajectories included
 };
 

@@ -12,12 +12,12 @@ namespace taut {
 struct CompareJob {
   std::string problem;  ///< file, absolute
   Overrides overrides;
-  std::string states;      ///< folder of the states, relative to the job's; empty: follow the own trajectory
-  bool records = false;    ///< follow the own trajectory, write its states to `states`, end at the first step not solved
-  bool cold = false;       ///< no multipliers and penalties from the states
+  std::string states;    ///< folder of the states, relative to the job's; empty: follow the own trajectory
+  bool records = false;  ///< follow the own trajectory, write its states to `states`, end at the first step not solved
+  bool cold = false;     ///< no multipliers and penalties from the states
   int steps = 1, repeat = 1, threads = 1;
-  double seconds = 0;             ///< wall clock; 0: no limit
-  std::int64_t memory_bytes = 0;  ///< 0: no limit
+  double seconds = 0;                       ///< wall clock; 0: no limit
+  std::int64_t memory_bytes = 0;            ///< 0: no limit
   std::string scene_hash, trajectory_hash;  ///< of the scene, and of the one whose trajectory gives the states
   std::string version;                      ///< of the program
 };
@@ -32,7 +32,7 @@ std::filesystem::path step_file(const std::filesystem::path& folder, int step);
 
 // Files in the folder of a job.
 inline constexpr const char* job_file = "job.json";
-inline constexpr const char* trials_file = "steps.jsonl";      // a line per step
+inline constexpr const char* trials_file = "steps.jsonl";     // a line per step
 inline constexpr const char* solutions_folder = "solutions";  // positions and multipliers, a checkpoint per step
 inline constexpr const char* log_file = "log.txt";
 inline constexpr const char* outcome_file = "run.json";  // written last, by the parent

@@ -120,9 +120,7 @@ StepTrial read_trial(const Json& json) {
   return trial;
 }
 
-Json spread_json(const Spread& spread) {
-  return {{"median", spread.median}, {"min", spread.min}, {"max", spread.max}};
-}
+Json spread_json(const Spread& spread) { return {{"median", spread.median}, {"min", spread.min}, {"max", spread.max}}; }
 
 Json summary_json(const EntryRun& run) {
   const EntrySummary s = summarize(run);
@@ -133,7 +131,8 @@ Json summary_json(const EntryRun& run) {
             {"largest_residual", s.residual}};
   json["distance"] = nullptr;
   if (s.distances > 0)
-    json["distance"] = {{"positions", s.position_distance}, {"objective", s.objective_distance}, {"steps", s.distances}};
+    json["distance"] = {
+        {"positions", s.position_distance}, {"objective", s.objective_distance}, {"steps", s.distances}};
   json["seconds_per_step"] = spread_json(s.seconds);
   json["linear_solves_per_step"] = s.linear_solves;
   return json;
@@ -198,14 +197,9 @@ std::string comparison_text(const Comparison& comparison) {
       {"cpu", comparison.machine.cpu}, {"cores", comparison.machine.cores}, {"os", comparison.machine.os}};
   json["problems"] = Json::array();
   for (const ProblemComparison& problem : comparison.problems) {
-    Json entry{{"name", problem.name},
-               {"file", problem.file},
-               {"hash", problem.hash},
-               {"folder", problem.folder},
-               {"size", problem.size},
-               {"steps", problem.steps_asked},
-               {"trajectory", nullptr},
-               {"entries", Json::array()}};
+    Json entry{{"name", problem.name},     {"file", problem.file},    {"hash", problem.hash},
+               {"folder", problem.folder}, {"size", problem.size},    {"steps", problem.steps_asked},
+               {"trajectory", nullptr},    {"entries", Json::array()}};
     if (!comparison.free) {
       entry["trajectory"] = entry_json(problem.trajectory);
       entry["trajectory"]["solved"] = problem.trajectory_solved;

@@ -101,7 +101,8 @@ Variation parse_variation(const std::string& text) {
   }
   const bool has_empty = std::count(variation.values.begin(), variation.values.end(), "") > 0;
   if (variation.key.empty() || variation.values.empty() || has_empty)
-    throw InputError("--vary " + text + ": expected KEY=V1,V2,..., as in constraints.limit.form=matrix,singular_values");
+    throw InputError("--vary " + text +
+                     ": expected KEY=V1,V2,..., as in constraints.limit.form=matrix,singular_values");
   return variation;
 }
 

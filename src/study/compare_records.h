@@ -22,11 +22,11 @@ struct EntryRun {
   int steps_asked = 0;
   /// "finished", "time_limit", "out_of_memory", "crash: SIGSEGV", "error", "no_states", "interrupted"
   std::string outcome = "finished";
-  std::string message;      ///< why it is not finished
-  double seconds = 0;       ///< wall clock of the process
+  std::string message;  ///< why it is not finished
+  double seconds = 0;   ///< wall clock of the process
   std::int64_t peak_memory_bytes = 0;
-  bool resumed = false;     ///< taken over from an earlier comparison
-  std::string folder;       ///< relative to that of the comparison
+  bool resumed = false;  ///< taken over from an earlier comparison
+  std::string folder;    ///< relative to that of the comparison
   std::vector<StepTrial> trials;
 };
 
@@ -51,11 +51,11 @@ EntrySummary summarize(const EntryRun& run);
 
 struct ProblemComparison {
   std::string name, file, hash;
-  std::string folder;        ///< relative to that of the comparison
-  EntryRun trajectory;       ///< gave the states; no trials where every entry follows its own
+  std::string folder;   ///< relative to that of the comparison
+  EntryRun trajectory;  ///< gave the states; no trials where every entry follows its own
   bool trajectory_solved = true;
   int steps_asked = 0;
-  double size = 0;           ///< diagonal of the scene's bounding box at the start, m
+  double size = 0;  ///< diagonal of the scene's bounding box at the start, m
   std::vector<EntryRun> entries;
 };
 
@@ -63,7 +63,7 @@ struct Comparison {
   std::vector<ProblemComparison> problems;
   bool free = false, cold = false, interrupted = false;
   int repeat = 1, threads = 1;
-  double time_limit = 0;               ///< s, of each process
+  double time_limit = 0;                ///< s, of each process
   std::int64_t memory_limit_bytes = 0;  ///< of each process
   std::string version;
   Machine machine;

@@ -4,8 +4,14 @@ namespace taut {
 
 const std::vector<SolverEntry>& solver_entries() {
   static const std::vector<SolverEntry> entries{
-      {"augmented_lagrangian", "the default, as the problem has it", {}},
-      {"multiplier_loop", "the augmented Lagrangian without the central path", {{"solver.central_path", "false"}}},
+      {"augmented_lagrangian",
+       "the default solver, as the problem has its options",
+       {{"solver.method", "augmented_lagrangian"}}},
+      {"multiplier_loop",
+       "the same without the central path",
+       {{"solver.method", "augmented_lagrangian"}, {"solver.central_path", "false"}}},
+      {"ipopt", "interior point, by Ipopt", {{"solver.method", "ipopt"}}},
+      {"nlopt", "sequential quadratic programming, by NLopt; small problems only", {{"solver.method", "nlopt"}}},
   };
   return entries;
 }

@@ -79,9 +79,9 @@ StepTrial StepTrials::run(const State& state) {
   std::vector<double> sorted = trial.seconds;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
-  const auto chosen = std::min_element(
-      trial.seconds.begin(), trial.seconds.end(),
-      [&](double a, double b) { return distance_from(*middle, a) < distance_from(*middle, b); });
+  const auto chosen = std::min_element(trial.seconds.begin(), trial.seconds.end(), [&](double a, double b) {
+    return distance_from(*middle, a) < distance_from(*middle, b);
+  });
   trial.result.timings = phases[static_cast<std::size_t>(chosen - trial.seconds.begin())];
   judge(problem, trial);
   trial.peak_memory_bytes = peak_memory_bytes();

@@ -15,22 +15,22 @@ namespace taut {
 
 /// How far a solution is from the reference solution of its step.
 struct Distance {
-  double positions = 0;  ///< largest distance of a vertex, relative to the size of the scene
-  double objective = 0;  ///< |f - f_ref| / max(|f_ref|, |f(x0) - f_ref|), x0 the initial guess
+  double positions = 0;   ///< largest distance of a vertex, relative to the size of the scene
+  double objective = 0;   ///< |f - f_ref| / max(|f_ref|, |f(x0) - f_ref|), x0 the initial guess
   std::string reference;  ///< label of the entry whose solution it is
 };
 
 /// What a solver made of one step, and what the judge says to that.
 struct StepTrial {
-  int step = 0;                            ///< from 1
-  Result result;                           ///< of the first repeat; its status is what the solver claims
-  Status judged = Status::solved;          ///< `solved` exactly where the residuals are within tolerance
-  Residuals residuals;                     ///< names of nodes are "vertex 3 of cloth"
+  int step = 0;                    ///< from 1
+  Result result;                   ///< of the first repeat; its status is what the solver claims
+  Status judged = Status::solved;  ///< `solved` exactly where the residuals are within tolerance
+  Residuals residuals;             ///< names of nodes are "vertex 3 of cloth"
   std::vector<WorstElement> worst_elements;
   double objective = 0, objective_at_start = 0;  ///< at the result and at the initial guess, J
-  std::string warm_start;            ///< where the multipliers it began with came from: "state", "own" or "none"
-  std::vector<double> seconds;       ///< wall clock of solve(), one per repeat
-  double warm_up_seconds = 0;        ///< of the untimed solve before the first step; 0 for the others
+  std::string warm_start;              ///< where the multipliers it began with came from: "state", "own" or "none"
+  std::vector<double> seconds;         ///< wall clock of solve(), one per repeat
+  double warm_up_seconds = 0;          ///< of the untimed solve before the first step; 0 for the others
   std::int64_t peak_memory_bytes = 0;  ///< of the process, up to this step
   std::optional<Distance> distance;    ///< set by measure_distances()
 
