@@ -10,16 +10,19 @@ namespace taut {
 
 /// What a child process may use.
 struct ChildLimits {
-  double seconds = 0;             ///< wall clock; then SIGTERM; 0: no limit
-  double grace_seconds = 2;       ///< from SIGTERM to SIGKILL
-  std::int64_t memory_bytes = 0;  ///< of data (RLIMIT_DATA: heap and private mappings); 0: no limit
+  double seconds = 0;        ///< wall clock; then SIGTERM; 0: no limit
+  double grace_seconds = 2;  ///< from SIGTERM to SIGKILL
+  /// Resident memory, looked at about every 20 ms; then SIGKILL; 0: no limit. What is only reserved does not count:
+  /// OpenBLAS reserves 128 MB a thread, and waits for ever where a limit of the system refuses them.
+  std::int64_t memory_bytes = 0;
 };
 
 enum class ChildEnd {
-  exited,      ///< by itself, with an exit code
-  crashed,     ///< by a signal that we did not send
-  time_limit,  ///< we ended it because its time was over
-  interrupted  ///< we ended it because of the stop flag
+  exited,        ///< by itself, with an exit code
+  crashed,       ///< by a signal that we did not send
+  time_limit,    ///< we ended it because its time was over
+  memory_limit,  ///< we ended it because it held too much memory
+  interrupted    ///< we ended it because of the stop flag
 };
 
 struct ChildOutcome {

@@ -140,7 +140,7 @@ void Compare::compare_problem(const ProblemPlan& plan, ProblemComparison& proble
   for (std::size_t k = 0; k < plan.entries.size(); ++k) {
     EntryRun& run = problem.entries[k];
     if (stopped()) return;
-    run.steps_asked = steps;
+    if (steps > 0) run.steps_asked = steps;
     if (steps == 0) {
       run.outcome = "no_states";
       run.message = "the reference has left no state to start from";

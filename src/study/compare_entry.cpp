@@ -39,7 +39,7 @@ void take_outcome(const ChildOutcome& child, const fs::path& folder, EntryRun& r
     run.outcome = "time_limit";
   } else if (child.end == ChildEnd::crashed) {
     run.outcome = "crash: " + signal_name(child.signal);
-  } else if (child.code == worker_out_of_memory) {
+  } else if (child.end == ChildEnd::memory_limit || child.code == worker_out_of_memory) {
     run.outcome = "out_of_memory";
   } else {
     run.outcome = child.code == worker_finished ? "finished" : "error";
@@ -57,7 +57,7 @@ void read_trials(const fs::path& folder, EntryRun& run) {
     begin = end + 1;
   }
   // What the process says of itself leaves out the memory of this one, which the system counts before exec.
-  if (!run.trials.empty()) run.peak_memory_bytes = run.trials.back().peak_memory_bytes;
+  if (run.outcome == "finished" && !run.trials.empty()) run.peak_memory_bytes = run.trials.back().peak_memory_bytes;
 }
 
 void write_outcome(const fs::path& folder, const EntryRun& run) {
