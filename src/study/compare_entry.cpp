@@ -19,8 +19,9 @@ using Json = nlohmann::ordered_json;
 /// The worker keeps to its time by itself; this much later it is ended.
 constexpr double patience = 1;  // s
 
-/// The last line of the log that is not empty.
+/// The last line of the log that is not empty; nothing where the process ended before it had a log.
 std::string last_line(const fs::path& log) {
+  if (!fs::exists(log)) return "";
   std::istringstream text(read_bytes(log));
   std::string last;
   for (std::string line; std::getline(text, line);) {

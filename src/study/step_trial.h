@@ -41,7 +41,7 @@ struct StepTrial {
 struct TrialOptions {
   int repeat = 1;     ///< how often each step is solved and timed
   bool cold = false;  ///< no multipliers and penalties from the state
-  Budget budget;
+  Budget budget = {};
 };
 
 /// Lets one solver solve time steps of a scene from given states, times it, and judges what it returns.
