@@ -24,6 +24,7 @@ constexpr const char* footer =
     "  taut solve hanging_cloth --out out/cloth  solve one, keep the results\n"
     "  taut check out/cloth                      judge what is stored there once more\n"
     "  taut solve --help                         everything about solving\n"
+    "  taut compare --help                       solvers against each other\n"
     "\n"
     "Exit codes: 0 solved within tolerance, 1 internal error or a file that cannot be written,\n"
     "2 wrong usage or input, 3 not solved (the result is written all the same), 130 interrupted.";
@@ -60,6 +61,8 @@ int run_program(int argc, char** argv) {
   add_check(program, code);
   add_list(program, code);
   add_schema(program, code);
+  add_compare(program, code);
+  add_compare_worker(program, code);
   try {
     program.parse(argc, argv);
     return code;

@@ -1,9 +1,7 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -13,6 +11,7 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/progress.h"
+#include "cli/stop_signals.h"
 #include "problems/read_scene.h"
 #include "report/terminal_summary.h"
 #include "study/records_json.h"
@@ -28,23 +27,6 @@ struct SolveArguments {
   double max_seconds = 0;
   bool resume = false, json = false, quiet = false;
 };
-
-std::atomic<bool> stop_requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler stores to it");
-
-extern "C" void request_stop(int) {
-  // The second time nobody wants to wait for the checkpoint.
-  if (stop_requested.exchange(true)) ::_exit(exit_interrupted);
-}
-
-void install_signal_handlers() {
-  struct sigaction action {};
-  action.sa_handler = request_stop;
-  action.sa_flags = SA_RESTART;
-  ::sigemptyset(&action.sa_mask);
-  ::sigaction(SIGINT, &action, nullptr);
-  ::sigaction(SIGTERM, &action, nullptr);
-}
 
 Overrides overrides_of(const SolveArguments& arguments) {
   Overrides overrides = parse_settings(arguments.settings);
@@ -65,7 +47,7 @@ int exit_code(Status status) {
 int solve(const SolveArguments& arguments) {
   if (arguments.resume && arguments.out.empty())
     throw UsageError("--resume needs --out DIR, the directory of the run to go on with");
-  install_signal_handlers();
+  const std::atomic<bool>& stop_requested = stop_on_signals();
   const Scene scene = read_scene(find_problem(arguments.problem), overrides_of(arguments));
 
   std::unique_ptr<Progress> progress;

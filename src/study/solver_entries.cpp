@@ -1,0 +1,28 @@
+#include "study/solver_entries.h"
+
+namespace taut {
+
+const std::vector<SolverEntry>& solver_entries() {
+  static const std::vector<SolverEntry> entries{
+      {"augmented_lagrangian",
+       "the default solver, as the problem has its options",
+       {{"solver.method", "augmented_lagrangian"}}},
+      {"multiplier_loop",
+       "the same without the central path",
+       {{"solver.method", "augmented_lagrangian"}, {"solver.central_path", "false"}}},
+      {"ipopt", "interior point, by Ipopt", {{"solver.method", "ipopt"}}},
+      {"nlopt", "sequential quadratic programming, by NLopt; small problems only", {{"solver.method", "nlopt"}}},
+  };
+  return entries;
+}
+
+const SolverEntry& solver_entry(const std::string& label) {
+  std::string allowed;
+  for (const SolverEntry& entry : solver_entries()) {
+    if (entry.label == label) return entry;
+    allowed += (allowed.empty() ? "" : ", ") + entry.label;
+  }
+  throw InputError("--solvers: found " + label + ", allowed: " + allowed);
+}
+
+}  // namespace taut
