@@ -1,0 +1,255 @@
+#include "energies/prism_shell.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "energies/prism_assembly.h"
+#include "energies/prism_quadrature.h"
+
+namespace taut {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr int thickness_axis = 2;  // E33 in Voigt's order
+
+double shear_factor(const PrismShape& shape, const PrismShellOptions& options) {
+  if (options.element == PrismElement::plain) return 1;
+  double longest = 0;
+  for (int j = 0; j < 3; ++j) longest = std::max(longest, (shape.mid.col(j) - shape.mid.col((j + 1) % 3)).norm());
+  const double thickness = 2 * shape.director.colwise().norm().mean();
+  const double soft = options.shear_stabilisation * longest * longest;
+  return options.shear_correction * thickness * thickness / (thickness * thickness + soft);
+}
+
+/// The smallest s in (0, 2] where det(A + s B) <= 0, infinity where there is none; det A > 0.
+double first_zero_determinant(const Matrix3& a, const Matrix3& b) {
+  const auto mixed = [](const Matrix3& p, const Matrix3& q) {  // d det(p + s q)/ds at 0
+    return q.col(0).dot(p.col(1).cross(p.col(2))) + q.col(1).dot(p.col(2).cross(p.col(0))) +
+           q.col(2).dot(p.col(0).cross(p.col(1)));
+  };
+  const double c0 = a.determinant(), c1 = mixed(a, b), c2 = mixed(b, a), c3 = b.determinant();
+  const auto value = [&](double s) { return c0 + s * (c1 + s * (c2 + s * c3)); };
+  // Between 0, the extrema and 2 the cubic is monotone.
+  double stops[3] = {2, 2, 2};
+  const double discriminant = c2 * c2 - 3 * c1 * c3;
+  if (discriminant >= 0) {
+    const double q = -(c2 + std::copysign(std::sqrt(discriminant), c2));
+    const double roots[2] = {q / (3 * c3), c1 / q};
+    for (int i = 0; i < 2; ++i) {
+      if (roots[i] > 0 && roots[i] < 2) stops[i] = roots[i];
+    }
+    if (stops[0] > stops[1]) std::swap(stops[0], stops[1]);
+  }
+  double low = 0;
+  for (double stop : stops) {
+    if (value(stop) > 0) {
+      low = stop;
+      continue;
+    }
+    double high = stop;
+    for (int i = 0; i < 60; ++i) (value(0.5 * (low + high)) > 0 ? low : high) = 0.5 * (low + high);
+    return low;
+  }
+  return infinity;
+}
+
+/// The minimiser over alpha of the neo-Hookean energy of a column where C33 grows by 2 c_g alpha at each point. The
+/// energy is sum w_g (mu c_g alpha + lambda/4 x_g - (lambda/4 + mu/2) ln x_g), x_g = det C_g linear in alpha: convex,
+/// and infinite at both ends of the interval where all x_g are positive. NaN where there is no such interval.
+template <int capacity>
+struct EnhancedColumn {
+  int count = 0;
+  double weight[capacity], growth[capacity], determinant[capacity], slope[capacity];  // w, c, x at 0, dx/dalpha
+
+  double minimiser(double lambda, double mu) const {
+    double low = -infinity, high = infinity;
+    for (int g = 0; g < count; ++g) {
+      if (slope[g] > 0) low = std::max(low, -determinant[g] / slope[g]);
+      if (slope[g] < 0) high = std::min(high, -determinant[g] / slope[g]);
+      if (slope[g] == 0 && !(determinant[g] > 0)) return std::nan("");
+    }
+    if (!(low < high) || !std::isfinite(low) || !std::isfinite(high)) return std::nan("");
+    double alpha = low < 0 && high > 0 ? 0 : 0.5 * (low + high);
+    for (int iteration = 0; iteration < 100; ++iteration) {
+      double first = 0, second = 0;
+      for (int g = 0; g < count; ++g) {
+        const double ratio = slope[g] / (determinant[g] + alpha * slope[g]);
+        first += weight[g] * (mu * growth[g] + 0.25 * lambda * slope[g] - (0.25 * lambda + 0.5 * mu) * ratio);
+        second += weight[g] * (0.25 * lambda + 0.5 * mu) * ratio * ratio;
+      }
+      (first > 0 ? high : low) = alpha;
+      double next = alpha - first / second;
+      if (!(next > low && next < high)) next = 0.5 * (low + high);
+      const double moved = std::abs(next - alpha);
+      alpha = next;
+      if (moved <= 1e-15 * (1 + std::abs(alpha))) break;
+    }
+    return alpha;
+  }
+};
+
+}  // namespace
+
+void PrismShellOptions::validate() const {
+  triangle_rule(points_in_plane);
+  if (points_in_thickness < 2 || points_in_thickness > 4) {
+    throw std::invalid_argument("PrismShellOptions: points_in_thickness must be 2, 3 or 4");
+  }
+  if (!(shear_correction > 0)) throw std::invalid_argument("PrismShellOptions: shear_correction must be positive");
+  if (!(shear_stabilisation >= 0)) {
+    throw std::invalid_argument("PrismShellOptions: shear_stabilisation must not be negative");
+  }
+}
+
+std::vector<RestPrism> rest_prisms(const std::vector<Prism>& prisms, const std::vector<Vector3>& nodes,
+                                   const Vector3& direction, int first_node) {
+  std::vector<RestPrism> rest;
+  for (const Prism& prism : prisms) {
+    RestPrism& r = rest.emplace_back();
+    r.direction = direction;
+    for (int j = 0; j < 6; ++j) {
+      r.nodes[j] = prism[j] + first_node;
+      r.points[j] = nodes.at(prism[j]);
+    }
+  }
+  return rest;
+}
+
+PrismShell::PrismShell(std::string name, const std::vector<RestPrism>& prisms, const SolidMaterial& material,
+                       const PrismShellOptions& options)
+    : name_(std::move(name)), material_(material), options_(options) {
+  options_.validate();
+  if (options_.element == PrismElement::plain) options_.enhanced_thickness = false;
+  for (const RestPrism& prism : prisms) {
+    const PrismShape shape(prism.points);
+    if (!(PrismJacobian(shape).smallest() > 0)) {
+      throw std::invalid_argument(name_ + ": expected prisms with a positive Jacobian, got an inverted one, number " +
+                                  std::to_string(rest_.size()));
+    }
+    const PrismKinematics kinematics(shape, prism.direction, options_.element, shear_factor(shape, options_));
+    const std::vector<Point> points = points_of(kinematics);
+    stencils_.add_vertices(prism.nodes);
+    rest_.push_back(kinematics.rest_gram());
+    scale_.emplace_back(2 * rest_.back()[gram_pair(0, 0)], 2 * rest_.back()[gram_pair(1, 1)],
+                        shape.director.squaredNorm() / 3);
+    if (material_.law == SolidLaw::stvk) {
+      stiffness_.push_back(constant_stiffness(points.data()));
+    } else {
+      points_.insert(points_.end(), points.begin(), points.end());
+    }
+  }
+}
+
+std::vector<PrismShell::Point> PrismShell::points_of(const PrismKinematics& kinematics) const {
+  std::vector<Point> points;
+  for (const TrianglePoint& in_plane : triangle_rule(options_.points_in_plane)) {
+    const double middle = kinematics.jacobian(in_plane.l, 0).determinant();
+    for (const LinePoint& line : gauss_rule(options_.points_in_thickness)) {
+      const double determinant = kinematics.jacobian(in_plane.l, line.gamma).determinant();
+      // Weighted so that constant stresses do no work on it: the patch test (Simo and Rifai 1990).
+      const double enhancement = options_.enhanced_thickness ? line.gamma * middle / determinant : 0.0;
+      points.push_back(
+          {kinematics.strain(in_plane.l, line.gamma), in_plane.weight * line.weight * determinant, enhancement});
+    }
+  }
+  return points;
+}
+
+PrismShell::GramStiffness PrismShell::constant_stiffness(const Point* points) const {
+  GramStiffness total = GramStiffness::Zero();
+  for (int column = 0; column < options_.points_in_plane; ++column) {
+    GramStrain coupling = GramStrain::Zero();
+    double enhanced = 0;
+    for (int g = 0; g < options_.points_in_thickness; ++g, ++points) {
+      const StrainMatrix stress = points->volume * material_.elasticity * points->strain;
+      total += points->strain.transpose() * stress;
+      coupling += points->enhancement * stress.row(thickness_axis).transpose();
+      enhanced += points->volume * points->enhancement * points->enhancement *
+                  material_.elasticity(thickness_axis, thickness_axis);
+    }
+    if (enhanced > 0) total -= coupling * coupling.transpose() / enhanced;
+  }
+  return 0.5 * (total + total.transpose());
+}
+
+bool PrismShell::add_neo_hookean_column(const Point* column, const GramStrain& strain, Wanted wanted,
+                                        Curvature curvature, Response& response) const {
+  constexpr int capacity = 4;
+  const int count = options_.points_in_thickness;
+  Voigt local[capacity];
+  for (int g = 0; g < count; ++g) local[g] = column[g].strain * strain;
+  if (options_.enhanced_thickness) {
+    EnhancedColumn<capacity> enhanced;
+    enhanced.count = count;
+    for (int g = 0; g < count; ++g) {
+      const Voigt& e = local[g];
+      const double c11 = 1 + 2 * e[0], c22 = 1 + 2 * e[1], c33 = 1 + 2 * e[2];
+      const double area = c11 * c22 - e[3] * e[3];
+      enhanced.weight[g] = column[g].volume;
+      enhanced.growth[g] = column[g].enhancement;
+      enhanced.slope[g] = 2 * column[g].enhancement * area;
+      enhanced.determinant[g] = c33 * area + 2 * e[3] * e[4] * e[5] - c11 * e[5] * e[5] - c22 * e[4] * e[4];
+    }
+    const double alpha = enhanced.minimiser(material_.lambda, material_.mu);
+    for (int g = 0; g < count; ++g) local[g][thickness_axis] += alpha * column[g].enhancement;
+  }
+  GramStrain coupling = GramStrain::Zero();
+  double stiffness = 0;
+  for (int g = 0; g < count; ++g) {
+    const Point& point = column[g];
+    const NeoHookeanPoint law(material_, local[g]);
+    if (!law.valid) return false;
+    response.value += point.volume * law.density;
+    if (wanted == Wanted::value) continue;
+    response.force.noalias() += point.strain.transpose() * (point.volume * law.stress);
+    if (wanted == Wanted::force) continue;
+    const Elasticity tangent = point.volume * law.tangent(curvature == Curvature::positive_semidefinite);
+    const StrainMatrix stress = tangent * point.strain;
+    response.stiffness.noalias() += point.strain.transpose() * stress;
+    coupling += point.enhancement * stress.row(thickness_axis).transpose();
+    stiffness += point.enhancement * point.enhancement * tangent(thickness_axis, thickness_axis);
+  }
+  if (stiffness > 0) response.stiffness -= coupling * coupling.transpose() / stiffness;
+  return true;
+}
+
+double PrismShell::evaluate(Index element, const double* x, double* gradient, double* hessian,
+                            Curvature curvature) const {
+  const PrismVectors v = prism_vectors(x);
+  const GramStrain strain = gram(v) - rest_[element];
+  if (material_.law == SolidLaw::stvk) {
+    const GramStiffness& stiffness = stiffness_[element];
+    const GramStrain force = stiffness * strain;
+    if (gradient) prism_gradient(v, force, gradient);
+    if (hessian) prism_hessian(v, force, stiffness, scale_[element], curvature, hessian);
+    return 0.5 * strain.dot(force);
+  }
+  Response response;
+  const Wanted wanted = hessian ? Wanted::stiffness : gradient ? Wanted::force : Wanted::value;
+  const Point* column = points_.data() + element * options_.points_in_plane * options_.points_in_thickness;
+  for (int q = 0; q < options_.points_in_plane; ++q, column += options_.points_in_thickness) {
+    if (add_neo_hookean_column(column, strain, wanted, curvature, response)) continue;
+    if (gradient) std::fill_n(gradient, 18, 0.0);
+    if (hessian) std::fill_n(hessian, 18 * 18, 0.0);
+    return infinity;
+  }
+  if (gradient) prism_gradient(v, response.force, gradient);
+  if (hessian) prism_hessian(v, response.force, response.stiffness, scale_[element], curvature, hessian);
+  return response.value;
+}
+
+double PrismShell::largest_step(Index /*element*/, const double* x, const double* dx) const {
+  const PrismVectors v = prism_vectors(x), dv = prism_vectors(dx);
+  double largest = infinity;
+  for (const TrianglePoint& in_plane : triangle_rule(options_.points_in_plane)) {
+    for (const LinePoint& line : gauss_rule(options_.points_in_thickness)) {
+      const TangentCoefficients g = tangents(in_plane.l, line.gamma);
+      largest = std::min(largest, first_zero_determinant(v * g, dv * g));
+    }
+  }
+  return largest;
+}
+
+}  // namespace taut
