@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/result.h"
+#include "energies/prism_shell.h"
+#include "geometry/layered_mesh.h"
+
+namespace taut {
+
+/// A thick shell for static tests: its mesh, a material per layer, supports and nodal forces.
+struct ShellCase {
+  TriangleMesh mesh;
+  LayeredMesh layered;
+  std::vector<std::shared_ptr<const Energy>> energies;
+  std::vector<bool> fixed;  ///< one per variable
+  Vector forces;            ///< N, one per variable
+
+  /// The mid-surface `mesh` with `thickness` and layers of these fractions.
+  ShellCase(TriangleMesh mesh, double thickness, const std::vector<double>& fractions = {1.0});
+
+  int vertices() const { return static_cast<int>(mesh.vertices.size()); }
+  Vector rest() const;
+  /// The material of one layer, or of all with -1.
+  void set_material(int layer, const SolidMaterial& material, const PrismShellOptions& options,
+                    const Vector3& fibres = Vector3::UnitX());
+  /// Fixes one axis of all nodes of a vertex.
+  void fix(int vertex, int axis);
+  /// A force on a vertex, half of it on the bottom and half on the top.
+  void add_force(int vertex, const Vector3& force);
+  /// A force per area on each vertex by a third of the triangles around (mid-surface), on bottom and top.
+  void add_surface_load(const Vector3& per_area);
+
+  /// u with K u = forces, K the exact Hessian at rest.
+  Vector linear_displacement() const;
+  /// Mean of a vertex's nodes in `values` (displacements or positions).
+  Vector3 mean(int vertex, const Vector& values) const;
+  /// Minimises the energies, and `more`, less forces . x from x by Newton's method until the largest nodal force is
+  /// below `tolerance` N.
+  Status minimise(Vector& x, double tolerance, const std::vector<const Energy*>& more = {}) const;
+
+ private:
+  std::vector<int> fixed_variables() const;
+};
+
+/// A surface bent out of the plane for tests of prisms: random points near a unit triangle and directors near its
+/// normal.
+std::array<Vector3, 6> random_prism(unsigned seed, double curvature);
+
+}  // namespace taut
