@@ -132,15 +132,23 @@ TEST(PrismShell, HasAnEnergyThatRigidMotionsDoNotChange) {
   }
 }
 
-/// Prescribes `field` on the boundary of the flat patch, solves for the inside, and returns the largest deviation from
-/// `field` inside relative to the largest value.
-double patch_error(const SolidMaterial& material, const PrismShellOptions& options,
-                   const std::function<Vector3(const Vector3&)>& field) {
+/// Prescribes `field` on the boundary of the flat patch, loads top and bottom with `traction` (Pa) and its opposite,
+/// solves for the inside, and returns the largest deviation from `field` there relative to the largest value.
+double patch_error(const Variant& variant, const std::function<Vector3(const Vector3&)>& field,
+                   const Vector3& traction) {
   const TriangleMesh mesh = patch_mesh();
   const LayeredMesh layered = make_layered(mesh, std::vector{0.1}, {1.0}, "patch");
-  const PrismShell shell("patch", rest_prisms(layered.prisms, layered.nodes), material, options);
+  const PrismShell shell("patch", rest_prisms(layered.prisms, layered.nodes), variant.material, variant.options);
   const Matrix k = rest_stiffness(shell, layered.nodes);
   const Vector exact = flatten(mapped(layered.nodes, field));
+  Vector load = Vector::Zero(exact.size());
+  for (const Triangle& t : mesh.triangles) {
+    const Vector3 a = mesh.vertices[t[1]] - mesh.vertices[t[0]], b = mesh.vertices[t[2]] - mesh.vertices[t[0]];
+    for (int vertex : t) {
+      load.segment<3>(3 * layered.node(vertex, 1)) += traction * (a.cross(b).norm() / 6);
+      load.segment<3>(3 * layered.node(vertex, 0)) -= traction * (a.cross(b).norm() / 6);
+    }
+  }
   std::vector<int> inner;
   for (std::size_t node = 0; node < layered.nodes.size(); ++node) {
     if (on_boundary(mesh.vertices[node / 2])) continue;
@@ -148,24 +156,43 @@ double patch_error(const SolidMaterial& material, const PrismShellOptions& optio
   }
   Vector boundary = exact;
   boundary(inner).setZero();
-  const Vector solution = Matrix(k(inner, inner)).ldlt().solve(-(k * boundary)(inner));
+  const Vector solution = Matrix(k(inner, inner)).ldlt().solve((load - k * boundary)(inner));
   return (solution - exact(inner)).cwiseAbs().maxCoeff() / exact.cwiseAbs().maxCoeff();
 }
 
-TEST(PrismShell, PassesTheMembranePatchTest) {
-  RandomValues random(3);
-  const Matrix3 gradient = random.matrix(3, 3);  // a uniform strain of the solid, thickness and shear included
+/// The patch test for a uniform displacement gradient, with the tractions that keep it in balance.
+double uniform_patch_error(const Variant& variant, const Matrix3& gradient) {
+  Voigt strain;
+  strain << gradient(0, 0), gradient(1, 1), gradient(2, 2), gradient(0, 1) + gradient(1, 0),
+      gradient(0, 2) + gradient(2, 0), gradient(1, 2) + gradient(2, 1);
+  const Voigt stress = variant.material.elasticity * strain;
+  return patch_error(variant, [&](const Vector3& p) -> Vector3 { return gradient * p; },
+                     {stress[4], stress[5], stress[2]});
+}
+
+TEST(PrismShell, PassesTheMembranePatchTestInPlaneStress) {
   for (const Variant& v : variants()) {
-    EXPECT_LE(patch_error(v.material, v.options, [&](const Vector3& p) -> Vector3 { return gradient * p; }), 1e-10)
-        << v.name;
+    Matrix3 gradient = Matrix3::Zero();
+    gradient.topLeftCorner<2, 2>() << 0.5, 0.2, -0.3, -0.4;
+    const Elasticity& d = v.material.elasticity;
+    gradient(2, 2) = -(d(2, 0) * gradient(0, 0) + d(2, 1) * gradient(1, 1)) / d(2, 2);
+    EXPECT_LE(uniform_patch_error(v, gradient), 1e-10) << v.name;
   }
 }
 
 TEST(PrismShell, PassesTheShearPatchTest) {
   for (const Variant& v : variants()) {
-    const auto shear = [](const Vector3& p) { return Vector3(0.7 * p.z(), -0.4 * p.z(), 0); };
-    EXPECT_LE(patch_error(v.material, v.options, shear), 1e-10) << v.name;
+    Matrix3 gradient = Matrix3::Zero();
+    gradient.col(2) << 0.7, -0.4, 0;
+    EXPECT_LE(uniform_patch_error(v, gradient), 1e-10) << v.name;
+    gradient = gradient.transpose().eval();
+    EXPECT_LE(uniform_patch_error(v, gradient), 1e-10) << v.name;
   }
+}
+
+TEST(PrismShell, PassesThePatchTestForAnyUniformStrain) {
+  RandomValues random(3);
+  for (const Variant& v : variants()) EXPECT_LE(uniform_patch_error(v, random.matrix(3, 3)), 1e-10) << v.name;
 }
 
 /// Pure bending, w = (a x^2 + 2 c x y + b y^2)/2 and u = -z grad w. The plain element fails this.
@@ -176,7 +203,7 @@ TEST(PrismShell, WithAssumedStrainsPassesTheBendingPatchTestWherePlainLocks) {
                    0.5 * (a * p.x() * p.x() + b * p.y() * p.y()) + c * p.x() * p.y());
   };
   for (const Variant& v : variants()) {
-    const double error = patch_error(v.material, v.options, bending);
+    const double error = patch_error(v, bending, Vector3::Zero());
     if (v.options.element == PrismElement::plain) {
       EXPECT_GT(error, 1e-3) << v.name;
     } else {
