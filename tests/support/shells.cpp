@@ -17,6 +17,18 @@ ShellCase::ShellCase(TriangleMesh surface, double thickness, const std::vector<d
   forces = Vector::Zero(3 * static_cast<Index>(layered.nodes.size()));
 }
 
+ShellCase::ShellCase(TriangleMesh surface, const std::vector<Vector3>& normals, double thickness)
+    : mesh(std::move(surface)) {
+  std::vector<Vector3> bottom = mesh.vertices, top = mesh.vertices;
+  for (std::size_t v = 0; v < normals.size(); ++v) {
+    bottom[v] -= 0.5 * thickness * normals[v];
+    top[v] += 0.5 * thickness * normals[v];
+  }
+  layered = make_layered(mesh, bottom, top, {1.0}, "shell");
+  fixed.assign(3 * layered.nodes.size(), false);
+  forces = Vector::Zero(3 * static_cast<Index>(layered.nodes.size()));
+}
+
 Vector ShellCase::rest() const { return flatten(layered.nodes); }
 
 void ShellCase::set_material(int layer, const SolidMaterial& material, const PrismShellOptions& options,

@@ -20,6 +20,9 @@ struct ShellCase {
   /// The mid-surface `mesh` with `thickness` and layers of these fractions.
   ShellCase(TriangleMesh mesh, double thickness, const std::vector<double>& fractions = {1.0});
 
+  /// Between the two surfaces at half of `thickness` on either side of `mesh` along `normals`, one a vertex.
+  ShellCase(TriangleMesh mesh, const std::vector<Vector3>& normals, double thickness);
+
   int vertices() const { return static_cast<int>(mesh.vertices.size()); }
   Vector rest() const;
   /// The material of one layer, or of all with -1.

@@ -7,6 +7,7 @@
 #include "constraints/obstacle.h"
 #include "constraints/strain_limit.h"
 #include "energies/dead_load.h"
+#include "energies/end_moment.h"
 #include "energies/hinge_bending.h"
 #include "energies/inertia.h"
 #include "energies/membrane.h"
@@ -179,6 +180,13 @@ std::vector<EnergySpecimen> energy_specimens() {
       {"bending_curved_rest", Form::other, [=] { return make_bending(curved); }},
       {"pressure", Form::other, [=] { return std::make_shared<Pressure>("pressure", mesh.triangles, 3.0); }},
       {"stiffness_damping", Form::projection, make_damping},
+      {"end_moment", Form::projection,
+       [] {
+         const LayeredMesh prisms = specimen_prisms();
+         const std::vector<EndMoment::Load> loads{{0, 1, 0.3}, {4, 5, -0.2}};
+         return std::make_shared<EndMoment>("moment", loads, Vector3(0.2, 1, 0.1), flatten(prisms.nodes));
+       },
+       [](Pose pose) { return posed_points(specimen_prisms().nodes, pose); }},
       {"inertia_prisms", Form::projection,
        [] {
          const LayeredMesh prisms = specimen_prisms();
