@@ -71,6 +71,7 @@ struct EnhancedColumn {
       if (slope[g] == 0 && !(determinant[g] > 0)) return std::nan("");
     }
     if (!(low < high) || !std::isfinite(low) || !std::isfinite(high)) return std::nan("");
+    const double width = std::min(high - low, 1.0);
     double alpha = low < 0 && high > 0 ? 0 : 0.5 * (low + high);
     for (int iteration = 0; iteration < 100; ++iteration) {
       double first = 0, second = 0;
@@ -79,12 +80,11 @@ struct EnhancedColumn {
         first += weight[g] * (mu * growth[g] + 0.25 * lambda * slope[g] - (0.25 * lambda + 0.5 * mu) * ratio);
         second += weight[g] * (0.25 * lambda + 0.5 * mu) * ratio * ratio;
       }
+      const double step = -first / second;
+      // Quadratic convergence: after a step this small the rest is round-off.
+      if (std::abs(step) <= 1e-9 * width) return alpha + step;
       (first > 0 ? high : low) = alpha;
-      double next = alpha - first / second;
-      if (!(next > low && next < high)) next = 0.5 * (low + high);
-      const double moved = std::abs(next - alpha);
-      alpha = next;
-      if (moved <= 1e-15 * (1 + std::abs(alpha))) break;
+      alpha = alpha + step > low && alpha + step < high ? alpha + step : 0.5 * (low + high);
     }
     return alpha;
   }

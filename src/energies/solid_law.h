@@ -49,7 +49,7 @@ struct NeoHookeanPoint {
   Elasticity tangent(bool semidefinite) const;
 
  private:
-  double lambda_, mu_, determinant_;
+  double lambda_, mu_, growth_;  // growth: J^2 - 1
   Matrix3 inverse_;
 };
 

@@ -5,6 +5,7 @@
 
 #include <Eigen/SVD>
 #include <array>
+#include <cmath>
 #include <deque>
 #include <stdexcept>
 #include <vector>
@@ -14,6 +15,9 @@
 #include "dynamics/stepper.h"
 #include "energies/hinge_bending.h"
 #include "energies/membrane.h"
+#include "energies/prism_shell.h"
+#include "geometry/grid.h"
+#include "geometry/layered_mesh.h"
 #include "linalg/cholesky.h"
 #include "linalg/svd3x2.h"
 #include "problems/build.h"
@@ -97,6 +101,31 @@ BENCHMARK_CAPTURE(membrane, stvk_gradient, "stvk", Wanted::gradient);
 BENCHMARK_CAPTURE(membrane, stvk_hessian, "stvk", Wanted::hessian);
 BENCHMARK_CAPTURE(membrane, neo_hookean_gradient, "neo_hookean", Wanted::gradient);
 BENCHMARK_CAPTURE(membrane, neo_hookean_hessian, "neo_hookean", Wanted::hessian);
+
+/// Two prisms a cell on the grid of the membrane's kernels, bent by noise of a hundredth of the thickness.
+void prism(benchmark::State& state, PrismElement element, SolidLaw law, Wanted wanted) {
+  const TriangleMesh mesh = make_grid(1, 1, kernel_cells, kernel_cells, Diagonals::alternating);
+  const LayeredMesh layered = make_layered(mesh, std::vector{0.01}, {1.0}, "plate");
+  PrismShellOptions options;
+  options.element = element;
+  const PrismShell shell("shell", rest_prisms(layered.prisms, layered.nodes), SolidMaterial::isotropic(law, 1e6, 0.3),
+                         options);
+  Vector x(3 * static_cast<Index>(layered.nodes.size()));
+  for (std::size_t node = 0; node < layered.nodes.size(); ++node) {
+    const double at = static_cast<double>(node);
+    const Vector3 noise(std::sin(1.0 * at), std::sin(2.0 * at), std::sin(3.0 * at));
+    x.segment<3>(3 * static_cast<Index>(node)) = layered.nodes[node] + 1e-4 * noise;
+  }
+  evaluate_all(state, shell, x, wanted);
+}
+BENCHMARK_CAPTURE(prism, stvk_gradient, PrismElement::assumed_strain, SolidLaw::stvk, Wanted::gradient);
+BENCHMARK_CAPTURE(prism, stvk_hessian, PrismElement::assumed_strain, SolidLaw::stvk, Wanted::hessian);
+BENCHMARK_CAPTURE(prism, stvk_exact_hessian, PrismElement::assumed_strain, SolidLaw::stvk, Wanted::exact_hessian);
+BENCHMARK_CAPTURE(prism, stvk_plain_exact_hessian, PrismElement::plain, SolidLaw::stvk, Wanted::exact_hessian);
+BENCHMARK_CAPTURE(prism, neo_hookean_gradient, PrismElement::assumed_strain, SolidLaw::neo_hookean, Wanted::gradient);
+BENCHMARK_CAPTURE(prism, neo_hookean_hessian, PrismElement::assumed_strain, SolidLaw::neo_hookean, Wanted::hessian);
+BENCHMARK_CAPTURE(prism, neo_hookean_exact_hessian, PrismElement::assumed_strain, SolidLaw::neo_hookean,
+                  Wanted::exact_hessian);
 
 void hinge(benchmark::State& state, Wanted wanted) {
   const PosedStep step(kernel_cells);

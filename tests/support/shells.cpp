@@ -106,7 +106,7 @@ Status ShellCase::minimise(Vector& x, double tolerance, const std::vector<const 
   const Status status =
       Newton(assembly, cholesky, 3, {})
           .minimise(
-              state, [&](const NewtonState& s) { return s.nodal_norm <= tolerance; }, {}, counts, timings);
+              state, [&](const NewtonState& s) { if (getenv("TRACE")) printf("   value %.12g norm %.4g\n", s.value, s.nodal_norm); return s.nodal_norm <= tolerance; }, {}, counts, timings);
   x = state.x;
   return status;
 }
