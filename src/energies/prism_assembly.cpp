@@ -46,9 +46,10 @@ void to_nodes(const From& from, To& to) {
   }
 }
 
-/// Columns (3 k + c) of the result: sum_l v_l[c] column gram_pair(k, l) of `matrix`.
-Matrix15 times_strain_derivative(const Matrix15& matrix, const PrismVectors& v) {
-  Matrix15 product;
+/// Columns (3 k + c) of the result, which has one more to be square: sum_l v_l[c] column gram_pair(k, l) of `matrix`.
+GramStiffness times_strain_derivative(const GramStiffness& matrix, const PrismVectors& v) {
+  GramStiffness product;
+  product.col(15).setZero();
   for (int k = 0; k < 5; ++k) {
     for (int c = 0; c < 3; ++c) {
       product.col(3 * k + c) = v(c, 0) * matrix.col(gram_pair(k, 0)) + v(c, 1) * matrix.col(gram_pair(k, 1)) +
@@ -68,9 +69,10 @@ void prism_gradient(const PrismVectors& v, const GramStrain& force, double* grad
   to_nodes(stacked, out);
 }
 
-void prism_hessian(const PrismVectors& v, const GramStrain& force, const Matrix15& stiffness, const Vector3& scale,
+void prism_hessian(const PrismVectors& v, const GramStrain& force, const GramStiffness& stiffness, const Vector3& scale,
                    Curvature curvature, double* hessian) {
-  Matrix15 h = times_strain_derivative(times_strain_derivative(stiffness, v).transpose(), v);
+  const GramStiffness turned_once = times_strain_derivative(stiffness, v).transpose();
+  Matrix15 h = times_strain_derivative(turned_once, v).topLeftCorner<15, 15>();
   Matrix5 s = symmetric(force);
   if (curvature == Curvature::positive_semidefinite) s = semidefinite_part(s, scale);
   for (int k = 0; k < 5; ++k) {

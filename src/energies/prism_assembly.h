@@ -12,7 +12,7 @@ void prism_gradient(const PrismVectors& v, const GramStrain& force, double* grad
 /// from `force`, which as a symmetric 5 x 5 matrix multiplies the identity of space. With positive_semidefinite that
 /// matrix is replaced by its semidefinite part, after scaling edges and directors to their lengths at rest (`scale`:
 /// the squares of two edges and of the directors, m^2).
-void prism_hessian(const PrismVectors& v, const GramStrain& force, const Eigen::Matrix<double, 15, 15>& stiffness,
-                   const Vector3& scale, Curvature curvature, double* hessian);
+void prism_hessian(const PrismVectors& v, const GramStrain& force, const GramStiffness& stiffness, const Vector3& scale,
+                   Curvature curvature, double* hessian);
 
 }  // namespace taut

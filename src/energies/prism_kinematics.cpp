@@ -6,11 +6,10 @@ namespace taut {
 namespace {
 
 using Coefficients = Eigen::Matrix<double, 5, 1>;
-using GramRow = Eigen::Matrix<double, 1, 15>;
 
-/// Half the change of the inner product of two vectors, p and q in terms of the five, as a row on GramStrain.
-GramRow half_product(const Coefficients& p, const Coefficients& q) {
-  GramRow row;
+/// Half the change of the inner product of two vectors, p and q in terms of the five, as coefficients of a GramStrain.
+GramStrain half_product(const Coefficients& p, const Coefficients& q) {
+  GramStrain row = GramStrain::Zero();
   for (int k = 0; k < 5; ++k) {
     row[gram_pair(k, k)] = p[k] * q[k];
     for (int l = k + 1; l < 5; ++l) row[gram_pair(k, l)] = 0.5 * (p[k] * q[l] + p[l] * q[k]);
@@ -47,7 +46,7 @@ PrismVectors prism_vectors(const double* y) {
 }
 
 GramStrain gram(const PrismVectors& v) {
-  GramStrain products;
+  GramStrain products = GramStrain::Zero();
   for (int k = 0; k < 5; ++k) {
     products[gram_pair(k, k)] = 0.5 * v.col(k).squaredNorm();
     for (int l = k + 1; l < 5; ++l) products[gram_pair(k, l)] = v.col(k).dot(v.col(l));
@@ -84,36 +83,36 @@ Matrix3 PrismKinematics::jacobian(const Vector3& l, double gamma) const {
 StrainMatrix PrismKinematics::covariant(const Vector3& l, double gamma) const {
   const TangentCoefficients g = tangents(l, gamma);
   StrainMatrix e;
-  e.row(0) = half_product(g.col(0), g.col(0));
-  e.row(1) = half_product(g.col(1), g.col(1));
-  e.row(3) = 2 * half_product(g.col(0), g.col(1));
+  e.col(0) = half_product(g.col(0), g.col(0));
+  e.col(1) = half_product(g.col(1), g.col(1));
+  e.col(3) = 2 * half_product(g.col(0), g.col(1));
   if (element_ == PrismElement::plain) {
-    e.row(2) = half_product(g.col(2), g.col(2));
-    e.row(4) = 2 * half_product(g.col(0), g.col(2));
-    e.row(5) = 2 * half_product(g.col(1), g.col(2));
+    e.col(2) = half_product(g.col(2), g.col(2));
+    e.col(4) = 2 * half_product(g.col(0), g.col(2));
+    e.col(5) = 2 * half_product(g.col(1), g.col(2));
     return e;
   }
   const auto thickness = [](int vertex) {
     const Coefficients n = Coefficients::Unit(2 + vertex);
     return half_product(n, n);
   };
-  e.row(2) = l[0] * thickness(0) + l[1] * thickness(1) + l[2] * thickness(2);
+  e.col(2) = l[0] * thickness(0) + l[1] * thickness(1) + l[2] * thickness(2);
   // Shear along the three edges at their middles and gamma = 0 (Lee and Bathe 2004).
   const Coefficients a1 = Coefficients::Unit(0), a2 = Coefficients::Unit(1);
   const auto edge_shear = [](const Coefficients& edge, int from, int to) {
     return half_product(edge, 0.5 * (Coefficients::Unit(2 + from) + Coefficients::Unit(2 + to)));
   };
-  const GramRow along1 = edge_shear(a1, 0, 1), along2 = edge_shear(a2, 0, 2), along3 = edge_shear(a2 - a1, 1, 2);
-  const GramRow twist = along2 - along1 - along3;
+  const GramStrain along1 = edge_shear(a1, 0, 1), along2 = edge_shear(a2, 0, 2), along3 = edge_shear(a2 - a1, 1, 2);
+  const GramStrain twist = along2 - along1 - along3;
   // The part linear in gamma is half the slope of the thickness strain, with the tied one in its place.
-  e.row(4) = 2 * (along1 + l[2] * twist) + gamma * (thickness(1) - thickness(0));
-  e.row(5) = 2 * (along2 - l[1] * twist) + gamma * (thickness(2) - thickness(0));
+  e.col(4) = 2 * (along1 + l[2] * twist) + gamma * (thickness(1) - thickness(0));
+  e.col(5) = 2 * (along2 - l[1] * twist) + gamma * (thickness(2) - thickness(0));
   return e;
 }
 
 StrainMatrix PrismKinematics::strain(const Vector3& l, double gamma) const {
-  StrainMatrix e = to_frame(jacobian(l, gamma).inverse()) * covariant(l, gamma);
-  e.bottomRows<2>() *= shear_scale_;
+  StrainMatrix e = covariant(l, gamma) * to_frame(jacobian(l, gamma).inverse()).transpose();
+  e.rightCols<2>() *= shear_scale_;
   return e;
 }
 

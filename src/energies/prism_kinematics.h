@@ -13,11 +13,14 @@ enum class PrismElement {
 
 /// The five vectors that a prism's strains depend on: x2 - x1, x3 - x1, n1, n2, n3, one per column, m.
 using PrismVectors = Eigen::Matrix<double, 3, 5>;
-/// Changes of their inner products, one per pair: (|v_k|^2 - |V_k|^2)/2 and v_k . v_l - V_k . V_l, m^2. Every strain of
-/// either element is linear in them, so they are strains that know nothing of rigid motions.
-using GramStrain = Eigen::Matrix<double, 15, 1>;
-/// Strain in Voigt's order = matrix x GramStrain.
-using StrainMatrix = Eigen::Matrix<double, 6, 15>;
+/// Changes of their 15 inner products, one per pair: (|v_k|^2 - |V_k|^2)/2 and v_k . v_l - V_k . V_l, m^2. Every strain
+/// of either element is linear in them, so they are strains that know nothing of rigid motions. The 16th entry is zero
+/// and keeps columns aligned.
+using GramStrain = Eigen::Matrix<double, 16, 1>;
+/// Second derivatives of an energy with respect to a GramStrain.
+using GramStiffness = Eigen::Matrix<double, 16, 16>;
+/// One column per strain in Voigt's order: strain = matrix^T x GramStrain.
+using StrainMatrix = Eigen::Matrix<double, 16, 6>;
 
 /// Place of the pair (k, l) in a GramStrain.
 constexpr int gram_pair(int k, int l) {

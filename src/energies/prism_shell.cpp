@@ -157,15 +157,15 @@ std::vector<PrismShell::Point> PrismShell::points_of(const PrismKinematics& kine
   return points;
 }
 
-PrismShell::GramStiffness PrismShell::constant_stiffness(const Point* points) const {
+GramStiffness PrismShell::constant_stiffness(const Point* points) const {
   GramStiffness total = GramStiffness::Zero();
   for (int column = 0; column < options_.points_in_plane; ++column) {
     GramStrain coupling = GramStrain::Zero();
     double enhanced = 0;
     for (int g = 0; g < options_.points_in_thickness; ++g, ++points) {
-      const StrainMatrix stress = points->volume * material_.elasticity * points->strain;
-      total += points->strain.transpose() * stress;
-      coupling += points->enhancement * stress.row(thickness_axis).transpose();
+      const StrainMatrix stress = points->volume * points->strain * material_.elasticity;
+      total += points->strain * stress.transpose();
+      coupling += points->enhancement * stress.col(thickness_axis);
       enhanced += points->volume * points->enhancement * points->enhancement *
                   material_.elasticity(thickness_axis, thickness_axis);
     }
@@ -179,7 +179,7 @@ bool PrismShell::add_neo_hookean_column(const Point* column, const GramStrain& s
   constexpr int capacity = 4;
   const int count = options_.points_in_thickness;
   Voigt local[capacity];
-  for (int g = 0; g < count; ++g) local[g] = column[g].strain * strain;
+  for (int g = 0; g < count; ++g) local[g] = column[g].strain.transpose() * strain;
   if (options_.enhanced_thickness) {
     EnhancedColumn<capacity> enhanced;
     enhanced.count = count;
@@ -203,12 +203,12 @@ bool PrismShell::add_neo_hookean_column(const Point* column, const GramStrain& s
     if (!law.valid) return false;
     response.value += point.volume * law.density;
     if (wanted == Wanted::value) continue;
-    response.force.noalias() += point.strain.transpose() * (point.volume * law.stress);
+    response.force.noalias() += point.strain * (point.volume * law.stress);
     if (wanted == Wanted::force) continue;
     const Elasticity tangent = point.volume * law.tangent(curvature == Curvature::positive_semidefinite);
-    const StrainMatrix stress = tangent * point.strain;
-    response.stiffness.noalias() += point.strain.transpose() * stress;
-    coupling += point.enhancement * stress.row(thickness_axis).transpose();
+    const StrainMatrix stress = point.strain.lazyProduct(tangent);
+    response.stiffness += point.strain.lazyProduct(stress.transpose());
+    coupling += point.enhancement * stress.col(thickness_axis);
     stiffness += point.enhancement * point.enhancement * tangent(thickness_axis, thickness_axis);
   }
   if (stiffness > 0) response.stiffness -= coupling * coupling.transpose() / stiffness;

@@ -57,7 +57,6 @@ class PrismShell final : public Energy {
   double largest_step(Index element, const double* x, const double* dx) const override;
 
  private:
-  using GramStiffness = Eigen::Matrix<double, 15, 15>;
   /// A quadrature point: strains, volume (m^3), and enhanced thickness strain E33 per alpha.
   struct Point {
     StrainMatrix strain;
