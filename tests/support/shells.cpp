@@ -1,9 +1,14 @@
 #include "support/shells.h"
 
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
 #include <stdexcept>
 
 #include "core/assembly.h"
 #include "energies/dead_load.h"
+#include "energies/prism_mass.h"
 #include "linalg/cholesky.h"
 #include "solvers/newton.h"
 #include "support/meshes.h"
@@ -67,21 +72,56 @@ std::vector<int> ShellCase::fixed_variables() const {
   return variables;
 }
 
+namespace {
+
+/// The exact Hessian at rest, factorised.
+struct RestStiffness {
+  Assembly assembly;
+  std::unique_ptr<Cholesky> cholesky;
+
+  RestStiffness(const ShellCase& shell, const std::vector<int>& fixed)
+      : assembly(shell.forces.size(), terms(shell), fixed, 1) {
+    assembly.set_order(fill_reducing_order(assembly.graph()));
+    assembly.hessian(shell.rest(), Curvature::exact);
+    cholesky = std::make_unique<Cholesky>(assembly.matrix(), 1);
+    if (!cholesky->factorize(assembly.matrix())) throw std::runtime_error("the stiffness at rest is not definite");
+  }
+  static std::vector<const Energy*> terms(const ShellCase& shell) {
+    std::vector<const Energy*> all;
+    for (const auto& energy : shell.energies) all.push_back(energy.get());
+    return all;
+  }
+  Vector solve(Vector loads, const std::vector<int>& fixed) {
+    for (int variable : fixed) loads[variable] = 0;
+    Vector ordered, u(loads.size());
+    assembly.to_ordered(loads, ordered);
+    cholesky->solve(ordered, ordered);
+    assembly.from_ordered(ordered, u);
+    return u;
+  }
+};
+
+}  // namespace
+
 Vector ShellCase::linear_displacement() const {
-  std::vector<const Energy*> terms;
-  for (const auto& energy : energies) terms.push_back(energy.get());
-  Assembly assembly(forces.size(), terms, fixed_variables(), 1);
-  assembly.set_order(fill_reducing_order(assembly.graph()));
-  assembly.hessian(rest(), Curvature::exact);
-  Cholesky cholesky(assembly.matrix(), 1);
-  if (!cholesky.factorize(assembly.matrix()))
-    throw std::runtime_error("the stiffness at rest is not positive definite");
-  Vector loads = forces, ordered, u(forces.size());
-  for (int variable : fixed_variables()) loads[variable] = 0;
-  assembly.to_ordered(loads, ordered);
-  cholesky.solve(ordered, ordered);
-  assembly.from_ordered(ordered, u);
-  return u;
+  return RestStiffness(*this, fixed_variables()).solve(forces, fixed_variables());
+}
+
+double ShellCase::lowest_frequency(double density) const {
+  const Inertia inertia = consistent_prism_inertia("inertia", layered.prisms, layered.nodes, density);
+  RestStiffness stiffness(*this, fixed_variables());
+  Vector mode = RandomValues(1).vector(forces.size());
+  double square = 0;
+  for (int i = 0; i < 200; ++i) {
+    Vector momentum = Vector::Zero(mode.size());
+    inertia.add_product(mode, momentum);
+    const Vector next = stiffness.solve(momentum, fixed_variables());
+    const double last = square;
+    square = 1 / std::sqrt(2 * inertia.kinetic_energy(next));  // the mode before has norm 1
+    mode = next * square;
+    if (std::abs(square - last) <= 1e-12 * square) break;
+  }
+  return std::sqrt(square);
 }
 
 Vector3 ShellCase::mean(int vertex, const Vector& values) const {
@@ -106,9 +146,14 @@ Status ShellCase::minimise(Vector& x, double tolerance, const std::vector<const 
   const Status status =
       Newton(assembly, cholesky, 3, {})
           .minimise(
-              state, [&](const NewtonState& s) { if (getenv("TRACE")) printf("   value %.12g norm %.4g\n", s.value, s.nodal_norm); return s.nodal_norm <= tolerance; }, {}, counts, timings);
+              state, [&](const NewtonState& s) { return s.nodal_norm <= tolerance; }, {}, counts, timings);
   x = state.x;
   return status;
+}
+
+void expect_ratio(const std::string& what, double ours, double reference, double tolerance) {
+  std::printf("%-66s %12.6g %12.6g %9.5f\n", what.c_str(), ours, reference, ours / reference);
+  EXPECT_NEAR(ours / reference, 1.0, tolerance) << what;
 }
 
 std::array<Vector3, 6> random_prism(unsigned seed, double curvature) {

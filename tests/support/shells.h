@@ -1,10 +1,12 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/result.h"
 #include "energies/prism_shell.h"
+#include "geometry/grid.h"
 #include "geometry/layered_mesh.h"
 
 namespace taut {
@@ -37,6 +39,8 @@ struct ShellCase {
 
   /// u with K u = forces, K the exact Hessian at rest.
   Vector linear_displacement() const;
+  /// The lowest natural angular frequency, 1/s, by inverse iteration with the consistent mass; `density` in kg/m^3.
+  double lowest_frequency(double density) const;
   /// Mean of a vertex's nodes in `values` (displacements or positions).
   Vector3 mean(int vertex, const Vector& values) const;
   /// Minimises the energies, and `more`, less forces . x from x by Newton's method until the largest nodal force is
@@ -46,6 +50,18 @@ struct ShellCase {
  private:
   std::vector<int> fixed_variables() const;
 };
+
+/// The unit square cut into a grid and mapped to a surface.
+template <class Map>
+TriangleMesh mapped_grid(int cells_x, int cells_y, Diagonals diagonals, const Map& map) {
+  TriangleMesh mesh = make_grid(1, 1, cells_x, cells_y, diagonals);
+  for (Vector3& v : mesh.vertices) v = map(v.x(), v.y());
+  return mesh;
+}
+
+/// Prints "what: ours, reference, ratio" for the tables of the documentation, and expects the ratio within `tolerance`
+/// of 1.
+void expect_ratio(const std::string& what, double ours, double reference, double tolerance);
 
 /// A surface bent out of the plane for tests of prisms: random points near a unit triangle and directors near its
 /// normal.
