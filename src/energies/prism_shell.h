@@ -13,7 +13,7 @@ struct PrismShellOptions {
   /// the cure for Poisson thickness locking. Of assumed_strain only.
   bool enhanced_thickness = true;
   int points_in_plane = 3;      ///< 1, 3 or 6: exact for degree 1, 2, 4. One point leaves a mechanism.
-  int points_in_thickness = 2;  ///< 2, 3 or 4 Gauss points
+  int points_in_thickness = 3;  ///< 2, 3 or 4 Gauss points: exact for strains of degree 1, 2, 3 in gamma of stvk
   /// Factor on the transverse shear stiffness of assumed_strain: 5/6 for one layer, which has constant shear where the
   /// exact one is a parabola; 1 where several layers follow the parabola.
   double shear_correction = 1;

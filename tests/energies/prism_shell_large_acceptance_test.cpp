@@ -17,12 +17,13 @@ constexpr double pi = std::numbers::pi, length = 10;
 
 /// A strip along x of 40 cells, clamped at x = 0 and kept from moving along y, with EI = 1 and nu = 0.
 struct Cantilever : ShellCase {
-  Cantilever(double slenderness, SolidLaw law)
-      : ShellCase(make_grid(length, 1, 40, 1, Diagonals::alternating), length / slenderness),
+  Cantilever(double slenderness, SolidLaw law, int cells = 40, int points = 3)
+      : ShellCase(make_grid(length, 1, cells, 1, Diagonals::alternating), length / slenderness),
         thickness(length / slenderness),
         young(12 / std::pow(thickness, 3)) {
     PrismShellOptions options;
     options.shear_correction = 5.0 / 6;
+    options.points_in_thickness = points;
     set_material(-1, SolidMaterial::isotropic(law, young, 0), options);
     for (int v = 0; v < vertices(); ++v) {
       const double at = mesh.vertices[v].x();
@@ -41,8 +42,8 @@ struct Cantilever : ShellCase {
 };
 
 /// The tip after each of `steps` equal steps to the moment that rolls a beam up to a full circle.
-std::vector<Vector2> roll_up(double slenderness, SolidLaw law, int steps) {
-  Cantilever strip(slenderness, law);
+std::vector<Vector2> roll_up(double slenderness, SolidLaw law, int steps, int cells = 40, int points = 3) {
+  Cantilever strip(slenderness, law, cells, points);
   const double moment = 2 * pi / length;
   Vector x = strip.rest();
   std::vector<EndMoment::Load> loads;
@@ -75,25 +76,37 @@ TEST(PrismShellRollUp, OfAThinStripIsTheCircleWithinHalfAPercentOfTheLength) {
   }
 }
 
-// St. Venant-Kirchhoff material is softer in bending than EI says, visibly so from L/t = 100 downwards.
-TEST(PrismShellRollUp, OfThickerStripsFollowsTheBendingLawOfStVenantKirchhoff) {
-  for (double slenderness : {10.0, 20.0, 100.0}) {
-    const int quarters = slenderness == 10 ? 3 : 4;
-    const std::vector<Vector2> path = roll_up(slenderness, SolidLaw::stvk, 5 * quarters);
-    const Cantilever strip(slenderness, SolidLaw::stvk);
-    const StvkBeam beam{strip.young, strip.thickness, 5.0 / 6, length};
-    for (int quarter = 1; quarter <= quarters; ++quarter) {
-      const double turn = pi / 2 * quarter;
-      const Vector2 reference = beam.tip_under_moment(turn / length) / length;
-      expect_tip("roll-up, L/t " + std::to_string(static_cast<int>(slenderness)) + ", load " +
-                     std::to_string(0.25 * quarter).substr(0, 4),
-                 path[5 * quarter - 1], reference, 1e-2);
-      if (slenderness < 50) {
-        const Vector2 elastica(std::sin(turn) / turn, (1 - std::cos(turn)) / turn);
-        EXPECT_GT((elastica - reference).norm(), 2e-3);
-      }
-    }
+/// Largest distance, over the quarters of the load up to `quarters`, from the beam with the same law.
+double distance_from_law(double slenderness, int quarters, int cells, int points) {
+  const std::vector<Vector2> path = roll_up(slenderness, SolidLaw::stvk, 5 * quarters, cells, points);
+  const Cantilever strip(slenderness, SolidLaw::stvk);
+  const StvkBeam beam{strip.young, strip.thickness, 5.0 / 6, length};
+  double largest = 0;
+  for (int quarter = 1; quarter <= quarters; ++quarter) {
+    const Vector2 reference = beam.tip_under_moment(pi / 2 * quarter / length) / length;
+    largest = std::max(largest, (path[5 * quarter - 1] - reference).norm());
   }
+  std::printf("roll-up, L/t %4.0f, to load %.2f, %3d cells, %d points: largest distance %.5f\n", slenderness,
+              0.25 * quarters, cells, points, largest);
+  return largest;
+}
+
+// St. Venant-Kirchhoff material is softer in bending than EI says: at L/t = 10 and three quarters of the load the tip
+// is 0.16 of the length from the elastica.
+TEST(PrismShellRollUp, OfThickerStripsFollowsTheBendingLawOfStVenantKirchhoff) {
+  EXPECT_LE(distance_from_law(100, 4, 40, 3), 5e-3);
+  EXPECT_LE(distance_from_law(20, 3, 40, 3), 5e-3);
+  EXPECT_LE(distance_from_law(20, 4, 80, 3), 5e-3);
+  EXPECT_LE(distance_from_law(10, 2, 40, 3), 5e-3);
+  EXPECT_LE(distance_from_law(10, 3, 80, 3), 5e-3);
+}
+
+// Why three points through the thickness are the default: two converge to another limit, four to the same.
+TEST(PrismShellRollUp, NeedsThreePointsThroughTheThickness) {
+  const double two = distance_from_law(10, 3, 160, 2), three = distance_from_law(10, 3, 160, 3);
+  EXPECT_GT(two, 1e-2);
+  EXPECT_LE(three, 1e-3);
+  EXPECT_NEAR(distance_from_law(10, 3, 160, 4), three, 1e-6);
 }
 
 /// Tip positions over the length under alpha = P L^2/EI = 1, 2, 4, 10.
@@ -141,6 +154,47 @@ TEST(PrismShellElastica, OfThickStripsFollowsTheLawWithShearAndStretch) {
                  tips[i], beam.tip_under_force(alphas[i] / (length * length)) / length, 5e-3);
     }
   }
+}
+
+struct Lifted {
+  double load, inner, outer;
+};
+
+/// Heights of the inner and outer end of the slit's free edge at fifths of the load.
+std::vector<Lifted> slit_annular(int radial, int around) {
+  const auto ring = [](double x, double y) {
+    const double angle = -2 * pi * x, radius = 6 + 4 * y;
+    return Vector3(radius * std::cos(angle), radius * std::sin(angle), 0);
+  };
+  ShellCase plate(mapped_grid(around, radial, Diagonals::alternating, ring), 0.03);
+  PrismShellOptions options;
+  options.shear_correction = 5.0 / 6;
+  plate.set_material(-1, SolidMaterial::isotropic(SolidLaw::stvk, 21e6, 0), options);
+  const auto vertex = [&](int i, int j) { return j * (around + 1) + i; };
+  for (int j = 0; j <= radial; ++j) {
+    for (int axis = 0; axis < 3; ++axis) plate.fix(vertex(around, j), axis);
+  }
+  Vector x = plate.rest();
+  std::vector<Lifted> path;
+  for (int step = 1; step <= 5; ++step) {
+    plate.forces.setZero();
+    for (int j = 0; j <= radial; ++j) {
+      const double share = (j == 0 || j == radial ? 0.5 : 1.0) * 4 / radial;
+      plate.add_force(vertex(0, j), {0, 0, 0.8 * step / 5 * share});
+    }
+    EXPECT_EQ(plate.minimise(x, 3e-5), Status::solved) << "step " << step;
+    path.push_back({0.2 * step, plate.mean(vertex(0, 0), x).z(), plate.mean(vertex(0, radial), x).z()});
+    std::printf("slit annular plate, %d x %d cells, load %.1f: %.4f %.4f\n", radial, around, 0.2 * step,
+                path.back().inner, path.back().outer);
+  }
+  return path;
+}
+
+TEST(PrismShellAnnular, X) {
+  slit_annular(8, 128);
+  slit_annular(8, 192);
+  slit_annular(16, 192);
+  slit_annular(12, 256);
 }
 
 }  // namespace
