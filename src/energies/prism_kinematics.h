@@ -45,6 +45,9 @@ class PrismKinematics {
   StrainMatrix strain(const Vector3& l, double gamma) const;
   /// dX/dq of MLTS (2) in the frame, m.
   Matrix3 jacobian(const Vector3& l, double gamma) const;
+  /// The frame's axes, one per column.
+  const Matrix3& frame() const { return frame_; }
+  double shear_scale() const { return shear_scale_; }
   GramStrain rest_gram() const { return gram(rest_); }
 
  private:

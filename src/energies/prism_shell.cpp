@@ -1,10 +1,12 @@
 #include "energies/prism_shell.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
+#include "energies/enhanced_thickness.h"
 #include "energies/prism_assembly.h"
 #include "energies/prism_quadrature.h"
 
@@ -55,41 +57,6 @@ double first_zero_determinant(const Matrix3& a, const Matrix3& b) {
   return infinity;
 }
 
-/// The minimiser over alpha of the neo-Hookean energy of a column where C33 grows by 2 c_g alpha at each point. The
-/// energy is sum w_g (mu c_g alpha + lambda/4 x_g - (lambda/4 + mu/2) ln x_g), x_g = det C_g linear in alpha: convex,
-/// and infinite at both ends of the interval where all x_g are positive. NaN where there is no such interval.
-template <int capacity>
-struct EnhancedColumn {
-  int count = 0;
-  double weight[capacity], growth[capacity], determinant[capacity], slope[capacity];  // w, c, x at 0, dx/dalpha
-
-  double minimiser(double lambda, double mu) const {
-    double low = -infinity, high = infinity;
-    for (int g = 0; g < count; ++g) {
-      if (slope[g] > 0) low = std::max(low, -determinant[g] / slope[g]);
-      if (slope[g] < 0) high = std::min(high, -determinant[g] / slope[g]);
-      if (slope[g] == 0 && !(determinant[g] > 0)) return std::nan("");
-    }
-    if (!(low < high) || !std::isfinite(low) || !std::isfinite(high)) return std::nan("");
-    const double width = std::min(high - low, 1.0);
-    double alpha = low < 0 && high > 0 ? 0 : 0.5 * (low + high);
-    for (int iteration = 0; iteration < 100; ++iteration) {
-      double first = 0, second = 0;
-      for (int g = 0; g < count; ++g) {
-        const double ratio = slope[g] / (determinant[g] + alpha * slope[g]);
-        first += weight[g] * (mu * growth[g] + 0.25 * lambda * slope[g] - (0.25 * lambda + 0.5 * mu) * ratio);
-        second += weight[g] * (0.25 * lambda + 0.5 * mu) * ratio * ratio;
-      }
-      const double step = -first / second;
-      // Quadratic convergence: after a step this small the rest is round-off.
-      if (std::abs(step) <= 1e-9 * width) return alpha + step;
-      (first > 0 ? high : low) = alpha;
-      alpha = alpha + step > low && alpha + step < high ? alpha + step : 0.5 * (low + high);
-    }
-    return alpha;
-  }
-};
-
 }  // namespace
 
 void PrismShellOptions::validate() const {
@@ -128,10 +95,14 @@ PrismShell::PrismShell(std::string name, const std::vector<RestPrism>& prisms, c
       throw std::invalid_argument(name_ + ": expected prisms with a positive Jacobian, got an inverted one, number " +
                                   std::to_string(rest_.size()));
     }
-    const PrismKinematics kinematics(shape, prism.direction, options_.element, shear_factor(shape, options_));
-    const std::vector<Point> points = points_of(kinematics);
+    kinematics_.emplace_back(shape, prism.direction, options_.element, shear_factor(shape, options_));
+    std::vector<Point> points;
+    for (const TrianglePoint& in_plane : triangle_rule(options_.points_in_plane)) {
+      const std::vector<Point> column = column_at(kinematics_.back(), in_plane.l, in_plane.weight);
+      points.insert(points.end(), column.begin(), column.end());
+    }
     stencils_.add_vertices(prism.nodes);
-    rest_.push_back(kinematics.rest_gram());
+    rest_.push_back(kinematics_.back().rest_gram());
     scale_.emplace_back(2 * rest_.back()[gram_pair(0, 0)], 2 * rest_.back()[gram_pair(1, 1)],
                         shape.director.squaredNorm() / 3);
     if (material_.law == SolidLaw::stvk) {
@@ -142,19 +113,68 @@ PrismShell::PrismShell(std::string name, const std::vector<RestPrism>& prisms, c
   }
 }
 
-std::vector<PrismShell::Point> PrismShell::points_of(const PrismKinematics& kinematics) const {
-  std::vector<Point> points;
-  for (const TrianglePoint& in_plane : triangle_rule(options_.points_in_plane)) {
-    const double middle = kinematics.jacobian(in_plane.l, 0).determinant();
-    for (const LinePoint& line : gauss_rule(options_.points_in_thickness)) {
-      const double determinant = kinematics.jacobian(in_plane.l, line.gamma).determinant();
-      // Weighted so that constant stresses do no work on it: the patch test (Simo and Rifai 1990).
-      const double enhancement = options_.enhanced_thickness ? line.gamma * middle / determinant : 0.0;
-      points.push_back(
-          {kinematics.strain(in_plane.l, line.gamma), in_plane.weight * line.weight * determinant, enhancement});
-    }
+PrismShell::Point PrismShell::point_at(const PrismKinematics& kinematics, const Vector3& l, double gamma,
+                                       double weight) const {
+  const double middle = kinematics.jacobian(l, 0).determinant(), here = kinematics.jacobian(l, gamma).determinant();
+  // Weighted so that constant stresses do no work on it: the patch test (Simo and Rifai 1990).
+  const double enhancement = options_.enhanced_thickness ? gamma * middle / here : 0.0;
+  return {kinematics.strain(l, gamma), weight * here, enhancement};
+}
+
+std::vector<PrismShell::Point> PrismShell::column_at(const PrismKinematics& kinematics, const Vector3& l,
+                                                     double weight) const {
+  std::vector<Point> column;
+  for (const LinePoint& line : gauss_rule(options_.points_in_thickness)) {
+    column.push_back(point_at(kinematics, l, line.gamma, weight * line.weight));
   }
-  return points;
+  return column;
+}
+
+double PrismShell::enhanced_strain(const Point* column, const Voigt* strains) const {
+  const int count = options_.points_in_thickness;
+  if (material_.law == SolidLaw::stvk) {
+    double work = 0, stiffness = 0;
+    for (int g = 0; g < count; ++g) {
+      const double weight = column[g].volume * column[g].enhancement;
+      work += weight * material_.elasticity.row(thickness_axis).dot(strains[g]);
+      stiffness += weight * column[g].enhancement * material_.elasticity(thickness_axis, thickness_axis);
+    }
+    return -work / stiffness;
+  }
+  EnhancedColumn enhanced;
+  enhanced.count = count;
+  for (int g = 0; g < count; ++g) {
+    const Voigt& e = strains[g];
+    const double c11 = 1 + 2 * e[0], c22 = 1 + 2 * e[1], c33 = 1 + 2 * e[2];
+    const double area = c11 * c22 - e[3] * e[3];
+    enhanced.weight[g] = column[g].volume;
+    enhanced.growth[g] = column[g].enhancement;
+    enhanced.slope[g] = 2 * column[g].enhancement * area;
+    enhanced.determinant[g] = c33 * area + 2 * e[3] * e[4] * e[5] - c11 * e[5] * e[5] - c22 * e[4] * e[4];
+  }
+  return enhanced.minimiser(material_.lambda, material_.mu);
+}
+
+PrismState PrismShell::state(Index element, const double* x, const Vector3& l, double gamma) const {
+  const PrismKinematics& kinematics = kinematics_[element];
+  const GramStrain gram_strain = gram(prism_vectors(x)) - rest_[element];
+  const Point here = point_at(kinematics, l, gamma, 1.0);
+  PrismState state{kinematics.frame(), here.strain.transpose() * gram_strain, Voigt::Zero()};
+  if (options_.enhanced_thickness) {
+    const std::vector<Point> column = column_at(kinematics, l, 1.0);
+    std::vector<Voigt> strains;
+    for (const Point& point : column) strains.push_back(point.strain.transpose() * gram_strain);
+    state.strain[thickness_axis] += here.enhancement * enhanced_strain(column.data(), strains.data());
+  }
+  if (material_.law == SolidLaw::stvk) {
+    state.stress = material_.elasticity * state.strain;
+  } else {
+    const NeoHookeanPoint law(material_, state.strain);
+    state.stress = law.valid ? law.stress : Voigt::Constant(std::nan(""));
+  }
+  // The strains carry the root of the shear factor; the stresses do work on those without it.
+  state.stress.tail<2>() *= kinematics.shear_scale();
+  return state;
 }
 
 GramStiffness PrismShell::constant_stiffness(const Point* points) const {
@@ -176,23 +196,12 @@ GramStiffness PrismShell::constant_stiffness(const Point* points) const {
 
 bool PrismShell::add_neo_hookean_column(const Point* column, const GramStrain& strain, Wanted wanted,
                                         Curvature curvature, Response& response) const {
-  constexpr int capacity = 4;
   const int count = options_.points_in_thickness;
-  Voigt local[capacity];
+  std::array<Voigt, most_in_thickness> local;
+  local.fill(Voigt::Zero());
   for (int g = 0; g < count; ++g) local[g] = column[g].strain.transpose() * strain;
   if (options_.enhanced_thickness) {
-    EnhancedColumn<capacity> enhanced;
-    enhanced.count = count;
-    for (int g = 0; g < count; ++g) {
-      const Voigt& e = local[g];
-      const double c11 = 1 + 2 * e[0], c22 = 1 + 2 * e[1], c33 = 1 + 2 * e[2];
-      const double area = c11 * c22 - e[3] * e[3];
-      enhanced.weight[g] = column[g].volume;
-      enhanced.growth[g] = column[g].enhancement;
-      enhanced.slope[g] = 2 * column[g].enhancement * area;
-      enhanced.determinant[g] = c33 * area + 2 * e[3] * e[4] * e[5] - c11 * e[5] * e[5] - c22 * e[4] * e[4];
-    }
-    const double alpha = enhanced.minimiser(material_.lambda, material_.mu);
+    const double alpha = enhanced_strain(column, local.data());
     for (int g = 0; g < count; ++g) local[g][thickness_axis] += alpha * column[g].enhancement;
   }
   GramStrain coupling = GramStrain::Zero();

@@ -36,6 +36,14 @@ struct RestPrism {
 std::vector<RestPrism> rest_prisms(const std::vector<Prism>& prisms, const std::vector<Vector3>& nodes,
                                    const Vector3& direction = Vector3::UnitX(), int first_node = 0);
 
+/// What a prism is like at one point, in the frame whose columns are its material axes at rest (axis 3 the normal of
+/// its mid-surface triangle).
+struct PrismState {
+  Matrix3 frame;
+  Voigt strain;  ///< Green strain, enhanced; transverse shear as the law sees it
+  Voigt stress;  ///< second Piola-Kirchhoff, Pa; shear stresses work on the strains before the shear correction
+};
+
 /// Elastic energy of six-node prisms of one material, the layer of a shell: 18 variables, y1 ... y6 of MLTS (22). The
 /// energy of an element is a function of its GramStrain, which the quadrature and the enhanced strains turn into: one
 /// quadratic form (stvk), or a sum over points (neo_hookean).
@@ -56,6 +64,10 @@ class PrismShell final : public Energy {
   bool guards_steps() const override { return material_.law == SolidLaw::neo_hookean; }
   double largest_step(Index element, const double* x, const double* dx) const override;
 
+  /// Strain and stress at barycentric coordinates `l` and gamma, with the enhanced strain of the column of points at
+  /// `l`. NaN where a neo-Hookean element has collapsed.
+  PrismState state(Index element, const double* x, const Vector3& l, double gamma) const;
+
  private:
   /// A quadrature point: strains, volume (m^3), and enhanced thickness strain E33 per alpha.
   struct Point {
@@ -70,7 +82,10 @@ class PrismShell final : public Energy {
   };
   enum class Wanted { value, force, stiffness };
 
-  std::vector<Point> points_of(const PrismKinematics& kinematics) const;
+  Point point_at(const PrismKinematics& kinematics, const Vector3& l, double gamma, double weight) const;
+  std::vector<Point> column_at(const PrismKinematics& kinematics, const Vector3& l, double weight) const;
+  /// The alpha of a column whose strains without it are `strains`.
+  double enhanced_strain(const Point* column, const Voigt* strains) const;
   GramStiffness constant_stiffness(const Point* points) const;
   bool add_neo_hookean_column(const Point* column, const GramStrain& strain, Wanted wanted, Curvature curvature,
                               Response& response) const;
@@ -79,6 +94,7 @@ class PrismShell final : public Energy {
   SolidMaterial material_;
   PrismShellOptions options_;
   Stencils stencils_{18};
+  std::vector<PrismKinematics> kinematics_;
   std::vector<GramStrain> rest_;          // one an element
   std::vector<Vector3> scale_;            // squared lengths of edges and directors at rest, m^2
   std::vector<GramStiffness> stiffness_;  // stvk: one an element

@@ -263,6 +263,44 @@ TEST(PrismShell, TurnsTheFibresOfAPlyWithItsDirection) {
   EXPECT_NEAR(energy(fibres_b, b), stiff, 1e-6 * stiff);
 }
 
+/// A flat prism with axis 3 along z, bent by x -> curvature about y.
+TEST(PrismShell, ReportsTheStateOfBendingInPlaneStress) {
+  const double curvature = 1e-5, young = 3, ratio = 0.3;
+  const TriangleMesh mesh = make_grid(1, 1, 1, 1, Diagonals::right);
+  const LayeredMesh layered = make_layered(mesh, std::vector{0.1}, {1.0}, "plate");
+  const Vector x = flatten(mapped(layered.nodes, [&](const Vector3& p) {
+    return Vector3(p.x() - curvature * p.z() * p.x(), p.y(), p.z() + 0.5 * curvature * p.x() * p.x());
+  }));
+  for (const SolidMaterial& material : {stvk(young, ratio), neo_hookean(young, ratio)}) {
+    const PrismShell shell("plate", rest_prisms(layered.prisms, layered.nodes), material, {});
+    Vector local(18);
+    shell.stencils().gather(0, x, local.data());
+    const PrismState top = shell.state(0, local.data(), Vector3::Constant(1.0 / 3), 1);
+    const double stretch = -0.05 * curvature;
+    EXPECT_LE((top.frame - Matrix3::Identity()).norm(), 1e-15);
+    EXPECT_NEAR(top.strain[0], stretch, 1e-4 * std::abs(stretch));
+    EXPECT_NEAR(top.strain[2], -ratio / (1 - ratio) * stretch, 1e-4 * std::abs(stretch));
+    EXPECT_NEAR(top.stress[0], young / (1 - ratio * ratio) * stretch, 1e-4 * std::abs(young * stretch));
+    EXPECT_NEAR(top.stress[1], ratio * top.stress[0], 1e-4 * std::abs(young * stretch));
+    EXPECT_LE(top.stress.tail<4>().norm(), 1e-4 * std::abs(young * stretch));
+    EXPECT_NEAR(shell.state(0, local.data(), Vector3::Constant(1.0 / 3), -1).stress[0], -top.stress[0],
+                1e-4 * std::abs(young * stretch));
+  }
+}
+
+TEST(PrismShell, ReportsStressesThatDoTheWorkOfTheShearCorrection) {
+  const LayeredMesh layered = make_layered(make_grid(1, 1, 1, 1, Diagonals::right), std::vector{0.1}, {1.0}, "plate");
+  PrismShellOptions options;
+  options.shear_correction = 0.5;
+  const PrismShell shell("plate", rest_prisms(layered.prisms, layered.nodes), stvk(2, 0), options);
+  const Vector x =
+      flatten(mapped(layered.nodes, [](const Vector3& p) { return Vector3(p.x() + 1e-6 * p.z(), p.y(), p.z()); }));
+  Vector local(18);
+  shell.stencils().gather(0, x, local.data());
+  const PrismState state = shell.state(0, local.data(), Vector3::Constant(1.0 / 3), 0);
+  EXPECT_NEAR(state.stress[4], 0.5 * 1e-6, 1e-11);  // G = 1
+}
+
 TEST(PrismShell, OfBothLawsAgreesAtSmallStrains) {
   RandomValues random(6);
   const auto points = random_prism(2, 0.2);
