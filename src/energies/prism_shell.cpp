@@ -124,6 +124,7 @@ PrismShell::Point PrismShell::point_at(const PrismKinematics& kinematics, const 
 std::vector<PrismShell::Point> PrismShell::column_at(const PrismKinematics& kinematics, const Vector3& l,
                                                      double weight) const {
   std::vector<Point> column;
+  column.reserve(static_cast<std::size_t>(options_.points_in_thickness));
   for (const LinePoint& line : gauss_rule(options_.points_in_thickness)) {
     column.push_back(point_at(kinematics, l, line.gamma, weight * line.weight));
   }
@@ -163,6 +164,7 @@ PrismState PrismShell::state(Index element, const double* x, const Vector3& l, d
   if (options_.enhanced_thickness) {
     const std::vector<Point> column = column_at(kinematics, l, 1.0);
     std::vector<Voigt> strains;
+    strains.reserve(column.size());
     for (const Point& point : column) strains.push_back(point.strain.transpose() * gram_strain);
     state.strain[thickness_axis] += here.enhancement * enhanced_strain(column.data(), strains.data());
   }

@@ -81,13 +81,16 @@ double distance_from_law(double slenderness, int quarters, int cells, int points
   const std::vector<Vector2> path = roll_up(slenderness, SolidLaw::stvk, 5 * quarters, cells, points);
   const Cantilever strip(slenderness, SolidLaw::stvk);
   const StvkBeam beam{strip.young, strip.thickness, 5.0 / 6, length};
-  double largest = 0;
+  double largest = 0, from_circle = 0;
   for (int quarter = 1; quarter <= quarters; ++quarter) {
-    const Vector2 reference = beam.tip_under_moment(pi / 2 * quarter / length) / length;
+    const double turn = pi / 2 * quarter;
+    const Vector2 reference = beam.tip_under_moment(turn / length) / length;
+    const Vector2 circle(std::sin(turn) / turn, (1 - std::cos(turn)) / turn);
+    from_circle = std::max(from_circle, (path[5 * quarter - 1] - circle).norm());
     largest = std::max(largest, (path[5 * quarter - 1] - reference).norm());
   }
-  std::printf("roll-up, L/t %4.0f, to load %.2f, %3d cells, %d points: largest distance %.5f\n", slenderness,
-              0.25 * quarters, cells, points, largest);
+  std::printf("roll-up, L/t %4.0f, to load %.2f, %3d cells, %d points: largest distance %.5f, from the circle %.5f\n",
+              slenderness, 0.25 * quarters, cells, points, largest, from_circle);
   return largest;
 }
 
