@@ -41,7 +41,7 @@ struct Cantilever : ShellCase {
   std::vector<int> tip;
 };
 
-/// The tip after each of `steps` equal steps to the moment that rolls a beam up to a full circle.
+/// The tip after each of `steps` twentieths of the moment that rolls a beam up to a full circle.
 std::vector<Vector2> roll_up(double slenderness, SolidLaw law, int steps, int cells = 40, int points = 3) {
   Cantilever strip(slenderness, law, cells, points);
   const double moment = 2 * pi / length;
