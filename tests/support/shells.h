@@ -63,8 +63,7 @@ TriangleMesh mapped_grid(int cells_x, int cells_y, Diagonals diagonals, const Ma
 /// of 1.
 void expect_ratio(const std::string& what, double ours, double reference, double tolerance);
 
-/// A surface bent out of the plane for tests of prisms: random points near a unit triangle and directors near its
-/// normal.
+/// Six points of a prism: mid-points near a unit triangle, directors within `curvature` of its normal, turned in space.
 std::array<Vector3, 6> random_prism(unsigned seed, double curvature);
 
 }  // namespace taut
