@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 
 namespace taut {
 
@@ -14,8 +15,7 @@ Inertia Inertia::lumped(std::string name, const std::vector<RestTriangle>& trian
   Inertia inertia(std::move(name), 1);
   for (int vertex = 0; vertex < static_cast<int>(vertices); ++vertex) {
     if (mass[vertex] == 0) continue;
-    inertia.stencils_.add_vertices(std::array{vertex});
-    inertia.element_mass_.push_back(mass[vertex]);
+    inertia.add_element(std::array{vertex}, {&mass[vertex], 1});
   }
   return inertia;
 }
@@ -23,10 +23,20 @@ Inertia Inertia::lumped(std::string name, const std::vector<RestTriangle>& trian
 Inertia Inertia::consistent(std::string name, const std::vector<RestTriangle>& triangles, double surface_density) {
   Inertia inertia(std::move(name), 3);
   for (const RestTriangle& triangle : triangles) {
-    inertia.stencils_.add_vertices(triangle.vertices);
-    inertia.element_mass_.push_back(surface_density * triangle.area);
+    std::array<double, 9> mass;
+    for (int i = 0; i < 9; ++i) mass[i] = surface_density * triangle.area * ((i % 4 == 0 ? 2.0 : 1.0) / 12.0);
+    inertia.add_element(triangle.vertices, mass);
   }
   return inertia;
+}
+
+void Inertia::add_element(std::span<const int> nodes, std::span<const double> mass) {
+  if (static_cast<int>(mass.size()) != nodes_ * nodes_) {
+    throw std::invalid_argument("Inertia::add_element: expected " + std::to_string(nodes_ * nodes_) +
+                                " entries of the mass matrix, got " + std::to_string(mass.size()));
+  }
+  stencils_.add_vertices(nodes);
+  mass_.insert(mass_.end(), mass.begin(), mass.end());
 }
 
 void Inertia::set_target(double coefficient, const Vector& target) {
@@ -56,7 +66,7 @@ double Inertia::evaluate(Index element, const double* x, double* gradient, doubl
                          Curvature /*curvature*/) const {
   const int* variables = stencils_[element];
   const int width = 3 * nodes_;
-  std::array<double, 9> offset, force;
+  std::array<double, max_stencil_width> offset, force;
   for (int i = 0; i < width; ++i) offset[i] = x[i] - target_[variables[i]];
   double value = 0;
   for (int i = 0; i < nodes_; ++i) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/energy.h"
@@ -8,8 +9,8 @@
 namespace taut {
 
 /// W(x) = a/2 (x - t)^T M (x - t): inertia with a = 1/h^2 about the predicted position t, or mass-proportional damping
-/// about the last one. M is lumped (one node an element) or consistent (one triangle an element); both coefficient and
-/// target change from step to step.
+/// about the last one. M is lumped (one node an element) or consistent (one triangle or prism an element); both
+/// coefficient and target change from step to step.
 class Inertia final : public Energy {
  public:
   /// A third of each triangle's mass on each of its vertices; `surface_density` in kg/m^2, `vertices` the number of
@@ -18,6 +19,11 @@ class Inertia final : public Energy {
                         Index vertices);
   /// Linear triangles integrated exactly: surface_density * area / 12 * [2 1 1; 1 2 1; 1 1 2].
   static Inertia consistent(std::string name, const std::vector<RestTriangle>& triangles, double surface_density);
+
+  /// No elements yet, of `nodes` nodes each (at most 8).
+  Inertia(std::string name, int nodes) : name_(std::move(name)), nodes_(nodes), stencils_(3 * nodes) {}
+  /// Appends an element on these nodes; `mass` is its symmetric nodes x nodes mass matrix, kg, for each coordinate.
+  void add_element(std::span<const int> nodes, std::span<const double> mass);
 
   /// `coefficient` a in 1/s^2 and `target` t, one entry per variable of the scene, m.
   void set_target(double coefficient, const Vector& target);
@@ -32,16 +38,13 @@ class Inertia final : public Energy {
                   Curvature curvature) const override;
 
  private:
-  Inertia(std::string name, int nodes) : name_(std::move(name)), nodes_(nodes), stencils_(3 * nodes) {}
   /// Entry (i, j) of the element's node mass matrix, kg.
-  double mass(Index element, int i, int j) const {
-    return element_mass_[element] * (nodes_ == 1 ? 1.0 : (i == j ? 2.0 : 1.0) / 12.0);
-  }
+  double mass(Index element, int i, int j) const { return mass_[(element * nodes_ + i) * nodes_ + j]; }
 
   std::string name_;
   int nodes_;
   Stencils stencils_;
-  std::vector<double> element_mass_;  // kg
+  std::vector<double> mass_;  // kg, nodes x nodes an element
   double coefficient_ = 0;
   Vector target_;
 };

@@ -5,6 +5,7 @@
 
 #include <Eigen/SVD>
 #include <array>
+#include <cmath>
 #include <deque>
 #include <stdexcept>
 #include <vector>
@@ -14,6 +15,9 @@
 #include "dynamics/stepper.h"
 #include "energies/hinge_bending.h"
 #include "energies/membrane.h"
+#include "energies/prism_shell.h"
+#include "geometry/grid.h"
+#include "geometry/layered_mesh.h"
 #include "linalg/cholesky.h"
 #include "linalg/svd3x2.h"
 #include "problems/build.h"
@@ -97,6 +101,42 @@ BENCHMARK_CAPTURE(membrane, stvk_gradient, "stvk", Wanted::gradient);
 BENCHMARK_CAPTURE(membrane, stvk_hessian, "stvk", Wanted::hessian);
 BENCHMARK_CAPTURE(membrane, neo_hookean_gradient, "neo_hookean", Wanted::gradient);
 BENCHMARK_CAPTURE(membrane, neo_hookean_hessian, "neo_hookean", Wanted::hessian);
+
+/// A plate of prisms, two a cell, bent by noise of a hundredth of its thickness.
+struct PosedPlate {
+  PosedPlate(int cells, PrismElement element, SolidLaw law)
+      : layered(make_layered(make_grid(1, 1, cells, cells, Diagonals::alternating), std::vector{0.01}, {1.0}, "plate")),
+        shell("shell", rest_prisms(layered.prisms, layered.nodes), SolidMaterial::isotropic(law, 1e6, 0.3),
+              options(element)),
+        x(3 * static_cast<Index>(layered.nodes.size())) {
+    for (std::size_t node = 0; node < layered.nodes.size(); ++node) {
+      const double at = static_cast<double>(node);
+      const Vector3 noise(std::sin(1.0 * at), std::sin(2.0 * at), std::sin(3.0 * at));
+      x.segment<3>(3 * static_cast<Index>(node)) = layered.nodes[node] + 1e-4 * noise;
+    }
+  }
+  static PrismShellOptions options(PrismElement element) {
+    PrismShellOptions made;
+    made.element = element;
+    return made;
+  }
+  LayeredMesh layered;
+  PrismShell shell;
+  Vector x;
+};
+
+void prism(benchmark::State& state, PrismElement element, SolidLaw law, Wanted wanted) {
+  const PosedPlate plate(kernel_cells, element, law);
+  evaluate_all(state, plate.shell, plate.x, wanted);
+}
+BENCHMARK_CAPTURE(prism, stvk_gradient, PrismElement::assumed_strain, SolidLaw::stvk, Wanted::gradient);
+BENCHMARK_CAPTURE(prism, stvk_hessian, PrismElement::assumed_strain, SolidLaw::stvk, Wanted::hessian);
+BENCHMARK_CAPTURE(prism, stvk_exact_hessian, PrismElement::assumed_strain, SolidLaw::stvk, Wanted::exact_hessian);
+BENCHMARK_CAPTURE(prism, stvk_plain_exact_hessian, PrismElement::plain, SolidLaw::stvk, Wanted::exact_hessian);
+BENCHMARK_CAPTURE(prism, neo_hookean_gradient, PrismElement::assumed_strain, SolidLaw::neo_hookean, Wanted::gradient);
+BENCHMARK_CAPTURE(prism, neo_hookean_hessian, PrismElement::assumed_strain, SolidLaw::neo_hookean, Wanted::hessian);
+BENCHMARK_CAPTURE(prism, neo_hookean_exact_hessian, PrismElement::assumed_strain, SolidLaw::neo_hookean,
+                  Wanted::exact_hessian);
 
 void hinge(benchmark::State& state, Wanted wanted) {
   const PosedStep step(kernel_cells);
@@ -223,6 +263,57 @@ BENCHMARK_CAPTURE(assembly_hessian, path, Linearisation::central_path)
     ->ArgNames({"cells", "threads"})
     ->ArgsProduct({{64, 128}, {1, 2}})
     ->UseRealTime();
+
+/// The plate held at one side, in the order of a solve.
+Assembly assembly_of(const PosedPlate& plate, int cells) {
+  std::vector<int> fixed;
+  for (int i = 0; i < 6 * (cells + 1); ++i) fixed.push_back(i);
+  Assembly assembly(plate.x.size(), {&plate.shell}, fixed, 1);
+  assembly.set_order(fill_reducing_order(assembly.graph()));
+  return assembly;
+}
+
+void prism_assembly_hessian(benchmark::State& state, SolidLaw law) {
+  const int cells = static_cast<int>(state.range(0));
+  const PosedPlate plate(cells, PrismElement::assumed_strain, law);
+  Assembly assembly = assembly_of(plate, cells);
+  Vector gradient;
+  for (auto _ : state) {
+    assembly.hessian(plate.x, Curvature::positive_semidefinite, &gradient);
+    benchmark::ClobberMemory();
+  }
+  count_elements(state, static_cast<double>(plate.layered.prisms.size()));
+}
+BENCHMARK_CAPTURE(prism_assembly_hessian, stvk, SolidLaw::stvk)
+    ->ArgName("cells")
+    ->Arg(128)
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(prism_assembly_hessian, neo_hookean, SolidLaw::neo_hookean)
+    ->ArgName("cells")
+    ->Arg(128)
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+
+void prism_factorize_and_solve(benchmark::State& state) {
+  const int cells = static_cast<int>(state.range(0));
+  const PosedPlate plate(cells, PrismElement::assumed_strain, SolidLaw::stvk);
+  Assembly assembly = assembly_of(plate, cells);
+  Vector gradient, right_hand_side, solution;
+  assembly.hessian(plate.x, Curvature::positive_semidefinite, &gradient);
+  assembly.to_ordered(gradient, right_hand_side);
+  Cholesky cholesky(assembly.matrix(), 1);
+  for (auto _ : state) {
+    if (!cholesky.factorize(assembly.matrix())) {
+      state.SkipWithError("the matrix is not positive definite");
+      break;
+    }
+    cholesky.solve(right_hand_side, solution);
+    benchmark::DoNotOptimize(solution.data());
+  }
+  state.counters["factor_nonzeros"] = cholesky.factor_nonzeros();
+}
+BENCHMARK(prism_factorize_and_solve)->ArgName("cells")->Arg(128)->UseRealTime()->Unit(benchmark::kMillisecond);
 
 /// Numeric factorisation and one pair of triangular solves: what no Newton iteration can do without.
 void factorize_and_solve(benchmark::State& state) {

@@ -9,13 +9,13 @@ class EveryEnergy : public testing::TestWithParam<EnergySpecimen> {};
 
 TEST_P(EveryEnergy, HasTaylorSlopesTwoAndThreeInEveryPose) {
   const auto energy = GetParam().make();
-  for (Pose pose : all_poses()) expect_derivatives(*energy, posed(pose), GetParam().form, to_string(pose));
+  for (Pose pose : all_poses()) expect_derivatives(*energy, GetParam().posed(pose), GetParam().form, to_string(pose));
 }
 
 TEST_P(EveryEnergy, GivesTheSameValueWithAndWithoutDerivatives) {
   const auto energy = GetParam().make();
   const Index width = energy->stencils().width();
-  const Vector x = posed(Pose::stretched);
+  const Vector x = GetParam().posed(Pose::stretched);
   Vector local(width), gradient(width), gradient_alone(width);
   Matrix hessian(width, width);
   for (Index element = 0; element < energy->stencils().count(); ++element) {
@@ -33,7 +33,7 @@ TEST_P(EveryEnergy, WithoutCurvatureHasAZeroHessian) {
   const Index width = energy->stencils().width();
   Vector local(width), gradient(width);
   Matrix hessian = Matrix::Ones(width, width);
-  energy->stencils().gather(0, posed(Pose::stretched), local.data());
+  energy->stencils().gather(0, GetParam().posed(Pose::stretched), local.data());
   energy->evaluate(0, local.data(), gradient.data(), hessian.data(), Curvature::exact);
   EXPECT_EQ(hessian.isZero(0), !energy->has_curvature());
 }
@@ -62,7 +62,7 @@ TEST(DerivativeCheck, SeesAnErrorOfAThousandthInOneEntry) {
   for (const EnergySpecimen& specimen : energy_specimens()) {
     const Wrong wrong(specimen.make());
     Vector local(wrong.stencils().width());
-    wrong.stencils().gather(0, posed(Pose::stretched), local.data());
+    wrong.stencils().gather(0, specimen.posed(Pose::stretched), local.data());
     const DerivativeReport report = check_derivatives(wrong, 0, local, 1);
     if (specimen.name == "dead_load" || specimen.name == "pressure") continue;  // the entry is zero
     EXPECT_FALSE(report.second.at_least(2.9) && report.gradient.at_least(1.9)) << specimen.name;

@@ -1,16 +1,21 @@
 #include "support/specimens.h"
 
+#include <cmath>
 #include <ostream>
 #include <stdexcept>
 
 #include "constraints/obstacle.h"
 #include "constraints/strain_limit.h"
 #include "energies/dead_load.h"
+#include "energies/end_moment.h"
 #include "energies/hinge_bending.h"
 #include "energies/inertia.h"
 #include "energies/membrane.h"
 #include "energies/pressure.h"
+#include "energies/prism_mass.h"
+#include "energies/prism_shell.h"
 #include "energies/stiffness_damping.h"
+#include "geometry/layered_mesh.h"
 #include "support/meshes.h"
 #include "support/random_values.h"
 
@@ -43,6 +48,46 @@ std::shared_ptr<const Energy> make_damping() {
   const auto damped = std::make_shared<Damped>();
   damped->damping.set_reference(0.7, posed(Pose::stretched));
   return {damped, &damped->damping};
+}
+
+/// Prisms on the sheet, bent and of uneven thickness at rest.
+LayeredMesh specimen_prisms() {
+  TriangleMesh mesh = specimen_sheet();
+  RandomValues random(4);
+  for (Vector3& vertex : mesh.vertices) vertex.z() = 0.1 * random.value();
+  std::vector<double> thickness;
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) thickness.push_back(random.between(0.3, 0.5));
+  return make_layered(mesh, thickness, {1.0}, "specimen");
+}
+
+EnergySpecimen prism_specimen(const std::string& name, const SolidMaterial& material, PrismShellOptions options) {
+  const auto make = [=]() -> std::shared_ptr<const Energy> {
+    const LayeredMesh mesh = specimen_prisms();
+    return std::make_shared<PrismShell>("shell", rest_prisms(mesh.prisms, mesh.nodes, {1, 1, 0}), material, options);
+  };
+  return {"prism_" + name, SemidefiniteForm::majorant, make,
+          [](Pose pose) { return posed_points(specimen_prisms().nodes, pose); }};
+}
+
+std::vector<EnergySpecimen> prism_specimens() {
+  const auto stvk = SolidMaterial::isotropic(SolidLaw::stvk, 700, 0.3);
+  const auto neo_hookean = SolidMaterial::isotropic(SolidLaw::neo_hookean, 700, 0.3);
+  const auto soft = SolidMaterial::isotropic(SolidLaw::neo_hookean, 700, 0.49);
+  const auto ply = SolidMaterial::ply({2500, 100, 50, 20, 0.25, 0.25});
+  PrismShellOptions plain, uncured, fine, stabilised;
+  plain.element = PrismElement::plain;
+  uncured.enhanced_thickness = false;
+  fine.points_in_plane = 6;
+  fine.points_in_thickness = 3;
+  stabilised.shear_stabilisation = 0.1;
+  stabilised.shear_correction = 5.0 / 6;
+  return {prism_specimen("plain_stvk", stvk, plain),
+          prism_specimen("plain_neo_hookean", neo_hookean, plain),
+          prism_specimen("assumed_stvk", stvk, {}),
+          prism_specimen("assumed_neo_hookean", neo_hookean, {}),
+          prism_specimen("assumed_neo_hookean_soft", soft, fine),
+          prism_specimen("uncured_neo_hookean", neo_hookean, uncured),
+          prism_specimen("assumed_ply_stabilised", ply, stabilised)};
 }
 
 std::vector<int> sheet_vertices() {
@@ -92,22 +137,26 @@ TriangleMesh specimen_sheet() {
   return mesh;
 }
 
-Vector posed(Pose pose) {
+Vector posed(Pose pose) { return posed_points(specimen_sheet().vertices, pose); }
+
+Vector posed_points(const std::vector<Vector3>& points, Pose pose) {
   RandomValues random(5);
   const Matrix3 turn = random.rotation();
   const auto noise = [&] { return Vector3(0.02 * random.vector(3)); };
-  return flatten(mapped(specimen_sheet().vertices, [&](const Vector3& rest) -> Vector3 {
+  return flatten(mapped(points, [&](const Vector3& rest) -> Vector3 {
     switch (pose) {
       case Pose::crumpled:
         return rest + noise();
       case Pose::stretched:
-        return turn * Vector3(1.3 * rest.x(), 0.75 * rest.y(), 0) + noise();
-      case Pose::bent:
-        return turn * rolled(rest, 0.9) + noise();
+        return turn * Vector3(1.3 * rest.x(), 0.75 * rest.y(), rest.z()) + noise();
+      case Pose::bent: {
+        const double angle = 0.9 * rest.x();
+        return turn * (rolled(rest, 0.9) + rest.z() * Vector3(-std::sin(angle), 0, std::cos(angle))) + noise();
+      }
       case Pose::uniform:
         return 1.2 * rest;
       case Pose::nearly_uniform:
-        return {1.2 * rest.x(), (1.2 + 1e-6) * rest.y(), 0};
+        return {1.2 * rest.x(), (1.2 + 1e-6) * rest.y(), 1.2 * rest.z()};
     }
     throw std::invalid_argument("posed: not a Pose");
   }));
@@ -118,7 +167,7 @@ std::vector<EnergySpecimen> energy_specimens() {
   const Index vertices = static_cast<Index>(mesh.vertices.size());
   const std::vector<Vector3> curved = mapped(mesh.vertices, [](const Vector3& v) { return rolled(v, -0.4); });
   using Form = SemidefiniteForm;
-  return {
+  std::vector<EnergySpecimen> all = {
       {"inertia_lumped", Form::projection,
        [=] { return make_inertia(Inertia::lumped("inertia", sheet_triangles(), 0.3, vertices)); }},
       {"inertia_consistent", Form::projection,
@@ -131,7 +180,24 @@ std::vector<EnergySpecimen> energy_specimens() {
       {"bending_curved_rest", Form::other, [=] { return make_bending(curved); }},
       {"pressure", Form::other, [=] { return std::make_shared<Pressure>("pressure", mesh.triangles, 3.0); }},
       {"stiffness_damping", Form::projection, make_damping},
+      {"end_moment", Form::projection,
+       [] {
+         const LayeredMesh prisms = specimen_prisms();
+         const std::vector<EndMoment::Load> loads{{0, 1, 0.3}, {4, 5, -0.2}};
+         return std::make_shared<EndMoment>("moment", loads, Vector3(0.2, 1, 0.1), flatten(prisms.nodes));
+       },
+       [](Pose pose) { return posed_points(specimen_prisms().nodes, pose); }},
+      {"inertia_prisms", Form::projection,
+       [] {
+         const LayeredMesh prisms = specimen_prisms();
+         Inertia inertia = consistent_prism_inertia("inertia", prisms.prisms, prisms.nodes, 0.3);
+         inertia.set_target(50.0, RandomValues(11).vector(3 * static_cast<Index>(prisms.nodes.size())));
+         return std::make_shared<Inertia>(std::move(inertia));
+       },
+       [](Pose pose) { return posed_points(specimen_prisms().nodes, pose); }},
   };
+  for (EnergySpecimen& specimen : prism_specimens()) all.push_back(std::move(specimen));
+  return all;
 }
 
 std::vector<ConstraintSpecimen> constraint_specimens() {

@@ -29,12 +29,15 @@ std::vector<Pose> all_poses();
 TriangleMesh specimen_sheet();
 /// Its vertices in a pose, three coordinates each.
 Vector posed(Pose pose);
+/// Points beside the sheet, with z as their height over it, in a pose.
+Vector posed_points(const std::vector<Vector3>& rest, Pose pose);
 
 /// One kind of energy as the derivative test sees it.
 struct EnergySpecimen {
   std::string name;
   SemidefiniteForm form;
   std::function<std::shared_ptr<const Energy>()> make;  ///< on specimen_sheet(), with whatever it borrows kept alive
+  std::function<Vector(Pose)> posed = taut::posed;      ///< all variables of its mesh in a pose
 };
 /// Every energy in src/energies/. A new energy adds its line here.
 std::vector<EnergySpecimen> energy_specimens();
