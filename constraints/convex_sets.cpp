@@ -28,14 +28,14 @@ struct Smoothed {
 
 Smoothed smoothed(double z, double lower, double upper, double epsilon) {
   Smoothed out;
-  // One bound: correction (y + r)/2 and slope 1 - (1 + y/r)/2, r = sqrt(y^2 + 4 epsilon), each without cancellation.
+  // One bound: correction (y + r)/2 and slope (1 - y/r)/2, r = sqrt(y^2 + 4 epsilon). With `small` the smaller root
+  // (r - |y|)/2 both are without cancellation.
   const auto add = [&](double y, double sign) {
-    const double r = std::sqrt(y * y + 4 * epsilon);
-    out.rate += sign / r;
-    out.correction += sign * (y >= 0 ? 0.5 * (y + r) : 2 * epsilon / (r - y));
+    const double r = std::sqrt(y * y + 4 * epsilon), inverse = 1 / r, small = 2 * epsilon / (r + std::abs(y));
+    out.rate += sign * inverse;
+    out.correction += sign * (y >= 0 ? y + small : small);
     // Between two bounds the slopes' deficits add up; the larger deficit is kept as a slope so that nothing cancels.
-    const double slope = y >= 0 ? 2 * epsilon / (r * (r + y)) : 0.5 * (1 - y / r);
-    const double deficit = y >= 0 ? 0.5 * (1 + y / r) : 2 * epsilon / (r * (r - y));
+    const double slope = y >= 0 ? small * inverse : 1 - small * inverse, deficit = y >= 0 ? 1 - slope : small * inverse;
     out.slope = slope < out.slope ? slope - (1 - out.slope) : out.slope - deficit;
   };
   if (std::isfinite(upper)) add(z - upper, 1.0);

@@ -190,7 +190,7 @@ bool follow_central_path(Assembly& assembly, Cholesky& cholesky, std::deque<Elim
   CentralPath path(assembly, cholesky, slacks, node_size, force_scale, options, threads, counts, timings);
   path.start(x);
   bool accepted = false;
-  double ask_below = 1e-4;  // residuals that are too large shrink about as the width does
+  double ask_below = 1e-5;  // residuals that are too large shrink about as the width does
   for (int iteration = 0; iteration < options.max_iterations && std::isfinite(path.merit()); ++iteration) {
     if (path.width() <= ask_below && path.force() <= force_tolerance) {
       const double ratio = judge(x);

@@ -111,6 +111,23 @@ struct EliminatedSlack::Path {
   template <int R, int W>
   using Local = Eigen::Matrix < double,
         R < 0 ? Eigen::Dynamic : R, W < 0 ? Eigen::Dynamic : W, 0, R < 0 ? max_rows : R, W<0 ? max_stencil_width : W>;
+  /// r = D^{-1} (F + mu dP_s/depsilon depsilon), with `change` = mu depsilon.
+  template <int R>
+  void aim(Index element, double change) {
+    const Eigen::Map<const Local<R, R>> d_inverse(inverse.col(element).data(), rows, rows);
+    Local<R, 1> f = mismatch.col(element);
+    f += change * rate.col(element);
+    Eigen::Map<Local<R, 1>>(correction.col(element).data(), rows) = d_inverse.lazyProduct(f);
+  }
+  /// W J dx - r.
+  template <int R, int W>
+  void multiplier_step(Index element, double penalty, const double* dx, double* out) const {
+    const Eigen::Map<const Local<R, W>> j(jacobian.col(element).data(), rows, width);
+    const Eigen::Map<const Local<R, R>> d_inverse(inverse.col(element).data(), rows, rows);
+    const Local<R, 1> change = j.lazyProduct(Eigen::Map<const Local<W, 1>>(dx, width));
+    Eigen::Map<Local<R, 1>>(out, rows) =
+        penalty * (d_inverse.lazyProduct(change) - change) - correction.col(element);
+  }
   template <int R, int W>
   void gradient(Index element, double weight, const double* lambda, double* out) const {
     const Eigen::Map<const Local<R, W>> j(jacobian.col(element).data(), rows, width);
@@ -127,6 +144,9 @@ struct EliminatedSlack::Path {
     Eigen::Map<Local<W, W>> h(out, width, width);
     for (int k = 0; k < width; ++k) h.col(k) = weight * (h.col(k) + j.transpose().lazyProduct(stiff.col(k)));
   }
+
+  /// What strain limits in matrix form have, and most scenes have nothing else.
+  bool is_triangle() const { return rows == 3 && width == 9; }
 
   /// task(first, last) for ranges of elements, each once.
   template <class Task>
@@ -173,73 +193,51 @@ EliminatedSlack::Mismatch EliminatedSlack::set_point(const Vector& x, double eps
 
 void EliminatedSlack::aim(double target_epsilon, int threads, Vector& gradient) {
   Path& path = *path_;
-  const int rows = path.rows, width = path.width;
   const double change = penalty_ * (target_epsilon - path.epsilon);
   path.for_ranges(threads, [&](Index first, Index last) {
     for (Index element = first; element < last; ++element) {
-      const double* inverse = path.inverse.col(element).data();
-      for (int i = 0; i < rows; ++i) {
-        double sum = 0;
-        for (int j = 0; j < rows; ++j)
-          sum += inverse[j * rows + i] * (path.mismatch(j, element) + change * path.rate(j, element));
-        path.correction(i, element) = sum;
-      }
+      path.is_triangle() ? path.aim<3>(element, change) : path.aim<-1>(element, change);
     }
   });
+  std::array<double, max_stencil_width> force;
   for (Index element = 0; element < path.square.size(); ++element) {
+    path_gradient(element, path.correction.col(element).data(), force.data());
     const int* variables = stencils()[element];
-    const double* jacobian = path.jacobian.col(element).data();
-    const double weight = constraint_.weight(element);
-    for (int k = 0; k < width; ++k) {
-      double sum = 0;
-      for (int i = 0; i < rows; ++i) sum += jacobian[k * rows + i] * path.correction(i, element);
-      gradient[variables[k]] -= weight * sum;
-    }
+    for (int k = 0; k < path.width; ++k) gradient[variables[k]] -= force[k];
   }
+}
+
+/// w J^T lambda of one element.
+void EliminatedSlack::path_gradient(Index element, const double* lambda, double* gradient) const {
+  const Path& path = *path_;
+  const double weight = constraint_.weight(element);
+  path.is_triangle() ? path.gradient<3, 9>(element, weight, lambda, gradient)
+                     : path.gradient<-1, -1>(element, weight, lambda, gradient);
 }
 
 double EliminatedSlack::evaluate_path(Index element, const double* x, double* gradient, double* hessian,
                                       Curvature curvature) const {
   if (!gradient) return 0;
   const Path& path = *path_;
-  const bool triangle = path.rows == 3 && path.width == 9;
-  const double weight = constraint_.weight(element);
-  const double* lambda = multipliers_.data() + element * path.rows;
-  if (triangle) {
-    path.gradient<3, 9>(element, weight, lambda, gradient);
-  } else {
-    path.gradient<-1, -1>(element, weight, lambda, gradient);
-  }
+  path_gradient(element, multipliers_.data() + element * path.rows, gradient);
   if (!hessian) return 0;
   constraint_.hessian(element, x, path.smoothed.col(element).data(), curvature, hessian);
-  if (triangle) {
-    path.hessian<3, 9>(element, weight, penalty_, hessian);
-  } else {
-    path.hessian<-1, -1>(element, weight, penalty_, hessian);
-  }
+  const double weight = constraint_.weight(element);
+  path.is_triangle() ? path.hessian<3, 9>(element, weight, penalty_, hessian)
+                     : path.hessian<-1, -1>(element, weight, penalty_, hessian);
   return 0;
 }
 
 void EliminatedSlack::multiplier_step(const Vector& dx, int threads, Vector& step) const {
   const Path& path = *path_;
-  const int rows = path.rows, width = path.width;
   step.resize(multipliers_.size());
   path.for_ranges(threads, [&](Index first, Index last) {
     std::array<double, max_stencil_width> moved;
-    Rows change;
     for (Index element = first; element < last; ++element) {
       stencils().gather(element, dx, moved.data());
-      const double* jacobian = path.jacobian.col(element).data();
-      for (int i = 0; i < rows; ++i) {
-        change[i] = 0;
-        for (int k = 0; k < width; ++k) change[i] += jacobian[k * rows + i] * moved[k];
-      }
-      const double* inverse = path.inverse.col(element).data();
-      for (int i = 0; i < rows; ++i) {
-        double sum = -change[i];
-        for (int j = 0; j < rows; ++j) sum += inverse[j * rows + i] * change[j];
-        step[element * rows + i] = penalty_ * sum - path.correction(i, element);
-      }
+      double* out = step.data() + element * path.rows;
+      path.is_triangle() ? path.multiplier_step<3, 9>(element, penalty_, moved.data(), out)
+                         : path.multiplier_step<-1, -1>(element, penalty_, moved.data(), out);
     }
   });
 }

@@ -58,6 +58,7 @@ class EliminatedSlack final : public Energy {
 
  private:
   struct Path;
+  void path_gradient(Index element, const double* lambda, double* gradient) const;
   double evaluate_path(Index element, const double* x, double* gradient, double* hessian, Curvature curvature) const;
 
   const Constraint& constraint_;

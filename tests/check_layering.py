@@ -38,6 +38,7 @@ THIRD_PARTY = [
     ("metis.h", ("src/linalg/*.cpp",)),
     ("cblas.h", ("src/linalg/*.cpp",)),
     ("omp.h", ("src/linalg/*.cpp",)),
+    ("dlfcn.h", ("src/linalg/*.cpp",)),
     ("tbb/*", ("src/core/*.cpp",)),
     ("oneapi/*", ("src/core/*.cpp",)),
     ("Ip[A-Z]*.hpp", ("solvers/ipopt.cpp",)),

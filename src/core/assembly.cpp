@@ -20,22 +20,50 @@ struct BlockSlot {
   short row = 0, column = 0;
 };
 
-/// One energy with what the assembly knows about each of its elements.
+/// Energies on the same elements, whose local derivatives are summed before they are scattered, with what the assembly
+/// knows about each element.
 struct Term {
-  const Energy* energy = nullptr;
+  std::vector<const Energy*> energies;     // all with curvature or all without
   int groups = 0;                          // per element
   std::vector<BlockSlot> slots;            // per element: groups (groups + 1) / 2, empty where there is no curvature
   std::vector<char> masked;                // per element: touches a partly fixed group
   std::vector<std::vector<int>> elements;  // per thread, with two or more threads
   std::vector<unsigned char> primary;      // per element: the one thread that writes its value
   mutable std::vector<double> values;      // per element
+
+  const Stencils& stencils() const { return energies.front()->stencils(); }
+  bool has_curvature() const { return energies.front()->has_curvature(); }
+  bool takes(const Energy& energy) const {
+    return has_curvature() == energy.has_curvature() && stencils() == energy.stencils();
+  }
+  /// As Energy::evaluate, of the sum.
+  double evaluate(Index element, const double* x, double* gradient, double* hessian, Curvature curvature) const;
 };
+
+double Term::evaluate(Index element, const double* x, double* gradient, double* hessian, Curvature curvature) const {
+  double value = energies.front()->evaluate(element, x, gradient, hessian, curvature);
+  if (energies.size() == 1) return value;
+  const int width = stencils().width();
+  std::array<double, max_stencil_width> more_gradient;
+  std::array<double, max_stencil_width * max_stencil_width> more_hessian;
+  for (std::size_t k = 1; k < energies.size(); ++k) {
+    value += energies[k]->evaluate(element, x, gradient ? more_gradient.data() : nullptr,
+                                   hessian ? more_hessian.data() : nullptr, curvature);
+    if (gradient) {
+      for (int i = 0; i < width; ++i) gradient[i] += more_gradient[i];
+    }
+    if (hessian) {
+      for (int i = 0; i < width * width; ++i) hessian[i] += more_hessian[i];
+    }
+  }
+  return value;
+}
 
 /// Calls visit(element) for each element of the term that `thread` of `threads` has to see, in ascending order.
 template <class Visit>
 void for_elements(const Term& term, int thread, int threads, const Visit& visit) {
   if (threads == 1) {
-    for (Index element = 0; element < term.energy->stencils().count(); ++element) visit(element);
+    for (Index element = 0; element < term.stencils().count(); ++element) visit(element);
   } else {
     for (int element : term.elements[static_cast<std::size_t>(thread)]) visit(Index{element});
   }
@@ -82,7 +110,7 @@ struct Assembly::Data {
 void Assembly::Data::choose_group_size() {
   group_size = size % 3 == 0 ? 3 : 1;
   for (const Term& term : terms) {
-    const Stencils& stencils = term.energy->stencils();
+    const Stencils& stencils = term.stencils();
     if (group_size == 3 && stencils.width() % 3 != 0) group_size = 1;
     for (Index element = 0; group_size == 3 && element < stencils.count(); ++element) {
       for (int i = 0; i < stencils.width(); i += 3) {
@@ -105,8 +133,8 @@ void Assembly::Data::build_graph() {
   }
   std::vector<std::vector<int>> neighbours(free_groups.size());
   for (const Term& term : terms) {
-    if (!term.energy->has_curvature()) continue;
-    const Stencils& stencils = term.energy->stencils();
+    if (!term.has_curvature()) continue;
+    const Stencils& stencils = term.stencils();
     for (Index element = 0; element < stencils.count(); ++element) {
       for (int a = 0; a < term.groups; ++a) {
         for (int b = 0; b < term.groups; ++b) {
@@ -162,10 +190,10 @@ void Assembly::Data::build_slots() {
   const int* starts = matrix.outerIndexPtr();
   const int* rows = matrix.innerIndexPtr();
   for (Term& term : terms) {
-    const Stencils& stencils = term.energy->stencils();
+    const Stencils& stencils = term.stencils();
     term.slots.clear();
     term.masked.assign(stencils.count(), 0);
-    if (!term.energy->has_curvature()) continue;
+    if (!term.has_curvature()) continue;
     for (Index element = 0; element < stencils.count(); ++element) {
       for (int i = 0; i < stencils.width(); ++i) term.masked[element] |= fixed[stencils[element][i]];
       for (int a = 0; a < term.groups; ++a) {
@@ -206,7 +234,7 @@ void Assembly::Data::share_out() {
   const int count = graph.count();
   std::vector<double> work(count + 1, 0.0);
   for (const Term& term : terms) {
-    const Stencils& stencils = term.energy->stencils();
+    const Stencils& stencils = term.stencils();
     for (Index element = 0; element < stencils.count(); ++element) {
       for (int k = 0; k < term.groups; ++k) {
         const int p = position[group_of(stencils, element, k)];
@@ -221,7 +249,7 @@ void Assembly::Data::share_out() {
     range[t] = static_cast<int>(std::lower_bound(work.begin(), work.end(), work[count] * t / threads) - work.begin());
   }
   for (Term& term : terms) {
-    const Stencils& stencils = term.energy->stencils();
+    const Stencils& stencils = term.stencils();
     term.values.assign(stencils.count(), 0.0);
     term.primary.assign(stencils.count(), 0);
     term.elements.assign(threads, {});
@@ -254,12 +282,13 @@ Assembly::Assembly(Index size, const std::vector<const Energy*>& energies, const
   data_->fixed.assign(size, 0);
   for (int variable : fixed) data_->fixed.at(variable) = 1;
   for (const Energy* energy : energies) {
-    Term term;
-    term.energy = energy;
-    data_->terms.push_back(std::move(term));
+    auto& terms = data_->terms;
+    auto same = std::find_if(terms.begin(), terms.end(), [&](const Term& term) { return term.takes(*energy); });
+    if (same == terms.end()) same = terms.insert(same, Term{});
+    same->energies.push_back(energy);
   }
   data_->choose_group_size();
-  for (Term& term : data_->terms) term.groups = term.energy->stencils().width() / data_->group_size;
+  for (Term& term : data_->terms) term.groups = term.stencils().width() / data_->group_size;
   data_->build_graph();
   std::vector<int> natural(data_->free_groups.size());
   std::iota(natural.begin(), natural.end(), 0);
@@ -311,11 +340,11 @@ double Assembly::value(const Vector& x) const {
   parallel_for(d.threads, [&](int thread) {
     std::array<double, max_stencil_width> local;
     for (const Term& term : d.terms) {
-      const Stencils& stencils = term.energy->stencils();
+      const Stencils& stencils = term.stencils();
       const Index first = stencils.count() * thread / d.threads, last = stencils.count() * (thread + 1) / d.threads;
       for (Index element = first; element < last; ++element) {
         stencils.gather(element, x, local.data());
-        term.values[element] = term.energy->evaluate(element, local.data(), nullptr, nullptr, Curvature::exact);
+        term.values[element] = term.evaluate(element, local.data(), nullptr, nullptr, Curvature::exact);
       }
     }
   });
@@ -328,10 +357,10 @@ double Assembly::gradient(const Vector& x, Vector& gradient) const {
   parallel_for(d.threads, [&](int thread) {
     std::array<double, max_stencil_width> local, part;
     for (const Term& term : d.terms) {
-      const Stencils& stencils = term.energy->stencils();
+      const Stencils& stencils = term.stencils();
       for_elements(term, thread, d.threads, [&](Index element) {
         stencils.gather(element, x, local.data());
-        const double value = term.energy->evaluate(element, local.data(), part.data(), nullptr, Curvature::exact);
+        const double value = term.evaluate(element, local.data(), part.data(), nullptr, Curvature::exact);
         if (term.primary[element] == thread) term.values[element] = value;
         d.add_local_gradient(term, element, thread, part.data(), gradient);
       });
@@ -344,7 +373,7 @@ double Assembly::gradient(const Vector& x, Vector& gradient) const {
 /// Adds those entries of an element's gradient that `thread` owns.
 void Assembly::Data::add_local_gradient(const Term& term, Index element, int thread, const double* part,
                                         Vector& gradient) const {
-  const int* variables = term.energy->stencils()[element];
+  const int* variables = term.stencils()[element];
   for (int k = 0; k < term.groups; ++k) {
     const int p = position[variables[k * group_size] / group_size];
     if (p < range[thread] || p >= range[thread + 1]) continue;
@@ -362,7 +391,7 @@ void Assembly::Data::clear_fixed(Vector& gradient) const {
 
 /// Clears the rows and columns of fixed variables in a local Hessian.
 void Assembly::Data::mask(const Term& term, Index element, double* hessian) const {
-  const Stencils& stencils = term.energy->stencils();
+  const Stencils& stencils = term.stencils();
   const int width = stencils.width();
   for (int i = 0; i < width; ++i) {
     if (!fixed[stencils[element][i]]) continue;
@@ -378,13 +407,13 @@ void Assembly::Data::add_hessian(int thread, const Vector& x, Curvature curvatur
   const int first = matrix.outerIndexPtr()[range[thread] * B], last = matrix.outerIndexPtr()[range[thread + 1] * B];
   std::fill(values + first, values + last, 0.0);
   for (const Term& term : terms) {
-    const bool curved = term.energy->has_curvature();
+    const bool curved = term.has_curvature();
     if (!curved && !total) continue;
-    const Stencils& stencils = term.energy->stencils();
+    const Stencils& stencils = term.stencils();
     const int width = stencils.width(), blocks = term.groups * (term.groups + 1) / 2;
     for_elements(term, thread, threads, [&](Index element) {
       stencils.gather(element, x, local.data());
-      term.energy->evaluate(element, local.data(), gradient.data(), curved ? hessian.data() : nullptr, curvature);
+      term.evaluate(element, local.data(), gradient.data(), curved ? hessian.data() : nullptr, curvature);
       if (total) add_local_gradient(term, element, thread, gradient.data(), *total);
       if (!curved) return;
       if (term.masked[element]) mask(term, element, hessian.data());
@@ -392,8 +421,9 @@ void Assembly::Data::add_hessian(int thread, const Vector& x, Curvature curvatur
       for (int k = 0; k < blocks; ++k, ++slot) {
         if (slot->start < first || slot->start >= last) continue;
         for (int c = 0; c < B; ++c) {
-          double* target = values + slot->start + c * slot->stride;
-          const double* source = hessian.data() + (slot->column + c) * width + slot->row;
+          // Not the same memory, which the compiler cannot know and has to before it may add two rows at once.
+          double* __restrict__ target = values + slot->start + c * slot->stride;
+          const double* __restrict__ source = hessian.data() + (slot->column + c) * width + slot->row;
           for (int r = 0; r < B; ++r) target[r] += source[r];
         }
       }
@@ -422,12 +452,14 @@ double Assembly::largest_step(const Vector& x, const Vector& dx) const {
   double largest = std::numeric_limits<double>::infinity();
   std::array<double, max_stencil_width> local, step;
   for (const Term& term : d.terms) {
-    if (!term.energy->guards_steps()) continue;
-    const Stencils& stencils = term.energy->stencils();
-    for (Index element = 0; element < stencils.count(); ++element) {
-      stencils.gather(element, x, local.data());
-      stencils.gather(element, dx, step.data());
-      largest = std::min(largest, term.energy->largest_step(element, local.data(), step.data()));
+    for (const Energy* energy : term.energies) {
+      if (!energy->guards_steps()) continue;
+      const Stencils& stencils = energy->stencils();
+      for (Index element = 0; element < stencils.count(); ++element) {
+        stencils.gather(element, x, local.data());
+        stencils.gather(element, dx, step.data());
+        largest = std::min(largest, energy->largest_step(element, local.data(), step.data()));
+      }
     }
   }
   return largest;

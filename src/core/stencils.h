@@ -18,6 +18,8 @@ class Stencils {
   /// vertices).
   void add_vertices(std::span<const int> vertices);
 
+  bool operator==(const Stencils&) const = default;
+
   int width() const { return width_; }
   Index count() const { return static_cast<Index>(variables_.size()) / width_; }
   const int* operator[](Index element) const { return variables_.data() + element * width_; }

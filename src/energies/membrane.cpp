@@ -47,18 +47,25 @@ double Membrane::evaluate_stvk(const RestTriangle& triangle, const double* x, do
   Eigen::Map<Matrix3>(gradient).noalias() = p * triangle.shape.transpose();
   if (!hessian) return value;
   if (curvature == Curvature::positive_semidefinite) s = positive_part(s);
-  const Matrix3 square = (weight * lame_.mu) * (f * f.transpose()), h = f * triangle.shape.transpose();
   const double mu = weight * lame_.mu, lambda = weight * lame_.lambda;
-  Eigen::Map<Eigen::Matrix<double, 9, 9>> out(hessian);
+  const Matrix3 square = mu * (f * f.transpose()), h = f * triangle.shape.transpose();
   for (int j = 0; j < 3; ++j) {
     const Vector2 b = triangle.shape.row(j), sb = s * b;
+    const double* hj = h.data() + 3 * j;
     for (int k = 0; k <= j; ++k) {
-      const Vector2 other = triangle.shape.row(k);
-      const Vector3 left = mu * h.col(k), right = lambda * h.col(j);
-      Matrix3 block = b.dot(other) * square + left * h.col(j).transpose() + right * h.col(k).transpose();
-      block.diagonal().array() += sb.dot(other);
-      out.block<3, 3>(3 * j, 3 * k) = block;
-      if (k < j) out.block<3, 3>(3 * k, 3 * j) = block.transpose();
+      const double inner = b.dot(triangle.shape.row(k)), geometric = sb.dot(triangle.shape.row(k));
+      const double* hk = h.data() + 3 * k;
+      double* lower = hessian + 27 * k + 3 * j;
+      double* upper = hessian + 27 * j + 3 * k;
+      for (int column = 0; column < 3; ++column) {
+        const double mu_h = mu * hj[column], lambda_h = lambda * hk[column];
+        for (int row = 0; row < 3; ++row) {
+          double entry = inner * square(row, column) + hk[row] * mu_h + hj[row] * lambda_h;
+          if (row == column) entry += geometric;
+          lower[9 * column + row] = entry;
+          upper[9 * row + column] = entry;
+        }
+      }
     }
   }
   return value;

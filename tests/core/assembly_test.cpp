@@ -115,16 +115,18 @@ void expect_dense_sum(const std::vector<const Energy*>& energies, const Vector& 
   }
 }
 
-/// All energies on the specimen sheet.
+/// All energies on the specimen sheet, two of each: those share their elements.
 struct Sheet {
   std::vector<std::shared_ptr<const Energy>> owned;
   std::vector<const Energy*> energies;
   Vector x = posed(Pose::stretched);
   Sheet() {
     for (const EnergySpecimen& specimen : energy_specimens()) {
+      if (specimen.posed(Pose::stretched).size() != x.size()) continue;  // on another mesh
       owned.push_back(specimen.make());
       energies.push_back(owned.back().get());
     }
+    for (const auto& energy : owned) energies.push_back(energy.get());
   }
 };
 

@@ -174,12 +174,12 @@ std::vector<EnergySpecimen> energy_specimens() {
        [] { return make_inertia(Inertia::consistent("inertia", sheet_triangles(), 0.3)); }},
       {"dead_load", Form::projection,
        [=] { return std::make_shared<DeadLoad>("load", RandomValues(7).vector(3 * vertices)); }},
-      {"membrane_stvk", Form::projection, [] { return make_membrane(MembraneLaw::stvk); }},
+      {"membrane_stvk", Form::majorant, [] { return make_membrane(MembraneLaw::stvk); }},
       {"membrane_neo_hookean", Form::projection, [] { return make_membrane(MembraneLaw::neo_hookean); }},
       {"bending_flat_rest", Form::other, [=] { return make_bending(mesh.vertices); }},
       {"bending_curved_rest", Form::other, [=] { return make_bending(curved); }},
       {"pressure", Form::other, [=] { return std::make_shared<Pressure>("pressure", mesh.triangles, 3.0); }},
-      {"stiffness_damping", Form::projection, make_damping},
+      {"stiffness_damping", Form::majorant, make_damping},
       {"end_moment", Form::projection,
        [] {
          const LayeredMesh prisms = specimen_prisms();
