@@ -68,6 +68,9 @@ std::unique_ptr<Solver> build_augmented_lagrangian(const Scene& scene, int threa
   options.central_path.enabled = scene.solver.central_path && !obstacles;
   options.penalty = scene.solver.penalty;
   options.penalty_growth = scene.solver.penalty_growth;
+  options.fixed_penalty = scene.solver.fixed_penalty;
+  options.warm_multipliers = scene.solver.warm_multipliers;
+  options.null_space = scene.solver.method == scene::SolverMethod::null_space;
   options.inner_tolerance_factor = scene.solver.inner_tolerance_factor;
   options.max_outer = scene.solver.max_outer;
   options.max_newton = scene.solver.max_newton;
@@ -155,6 +158,7 @@ TimeOptions time_options(const Scene& scene) {
 std::unique_ptr<Solver> build_solver(const Scene& scene, int threads) {
   switch (scene.solver.method) {
     case scene::SolverMethod::augmented_lagrangian:
+    case scene::SolverMethod::null_space:
       return build_augmented_lagrangian(scene, threads);
     case scene::SolverMethod::ipopt:
       return build_ipopt(scene);

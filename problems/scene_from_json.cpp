@@ -274,6 +274,7 @@ class SceneReader {
   static scene::Solver solver(const Json& json) {
     scene::Solver result;
     result.method = choose<SolverMethod>(json["method"], {{"augmented_lagrangian", SolverMethod::augmented_lagrangian},
+                                                          {"null_space", SolverMethod::null_space},
                                                           {"ipopt", SolverMethod::ipopt},
                                                           {"nlopt", SolverMethod::nlopt}});
     const Json& tolerance = json["tolerance"];
@@ -281,6 +282,8 @@ class SceneReader {
     result.central_path = json["central_path"];
     result.penalty = json["penalty"];
     result.penalty_growth = json["penalty_growth"];
+    result.fixed_penalty = json["fixed_penalty"];
+    result.warm_multipliers = json["warm_multipliers"];
     result.max_outer = json["max_outer"];
     result.max_newton = json["max_newton"];
     result.inner_tolerance_factor = json["inner_tolerance_factor"];

@@ -10,6 +10,13 @@ const std::vector<SolverEntry>& solver_entries() {
       {"multiplier_loop",
        "the same without the central path",
        {{"solver.method", "augmented_lagrangian"}, {"solver.central_path", "false"}}},
+      {"fixed_penalty",
+       "the published method: one penalty of 1e3 N/m, multipliers from zero in each step, no central path",
+       {{"solver.method", "augmented_lagrangian"},
+        {"solver.central_path", "false"},
+        {"solver.fixed_penalty", "1000"},
+        {"solver.warm_multipliers", "false"}}},
+      {"null_space", "pins in the null space of their equations, another factorisation", {{"solver.method", "null_space"}}},
       {"ipopt", "interior point, by Ipopt", {{"solver.method", "ipopt"}}},
       {"nlopt", "sequential quadratic programming, by NLopt; small problems only", {{"solver.method", "nlopt"}}},
   };
