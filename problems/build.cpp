@@ -9,6 +9,7 @@
 #include "solvers/augmented_lagrangian.h"
 #include "solvers/ipopt.h"
 #include "solvers/nlopt.h"
+#include "solvers/penalised_pins.h"
 
 namespace taut {
 namespace {
@@ -75,7 +76,9 @@ std::unique_ptr<Solver> build_augmented_lagrangian(const Scene& scene, int threa
   options.max_outer = scene.solver.max_outer;
   options.max_newton = scene.solver.max_newton;
   options.threads = threads;
-  return std::make_unique<AugmentedLagrangian>(options);
+  auto solver = std::make_unique<AugmentedLagrangian>(options);
+  if (!scene.solver.penalised_pins) return solver;
+  return std::make_unique<PenalisedPins>(std::move(solver), options.tolerances);
 }
 
 std::unique_ptr<Solver> build_ipopt(const Scene& scene) {

@@ -198,6 +198,7 @@ struct Solver {
   double penalty = 1000;  ///< factor on the automatic first penalty
   double penalty_growth = 8;
   double fixed_penalty = 0;  ///< 0: none
+  bool penalised_pins = false;
   bool warm_multipliers = true;
   int max_outer = 100;
   int max_newton = 1000;  ///< per step

@@ -283,6 +283,7 @@ class SceneReader {
     result.penalty = json["penalty"];
     result.penalty_growth = json["penalty_growth"];
     result.fixed_penalty = json["fixed_penalty"];
+    result.penalised_pins = json["pins"] == "penalised";
     result.warm_multipliers = json["warm_multipliers"];
     result.max_outer = json["max_outer"];
     result.max_newton = json["max_newton"];
