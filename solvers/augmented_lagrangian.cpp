@@ -340,9 +340,19 @@ void AugmentedLagrangian::Run::loop() {
         result.x = state.x;
         result.multipliers = bounded;
         judged = residuals(problem, result);
-        if (judged.feasibility > options.tolerances.feasibility) {
+        // With a finite penalty the energies violate feasible constraints a little, too: a point that was much closer
+        // tells that there is more to gain.
+        const bool closest = best_judged.feasibility > 0.5 * judged.feasibility;
+        if (judged.feasibility > options.tolerances.feasibility && closest) {
           return finish(Status::infeasible,
                         "no nearby point satisfies the constraints; this is the closest compromise");
+        }
+        if (!closest) {
+          state.x = best.x;
+          for (std::size_t k = 0; k < work.slacks.size(); ++k) {
+            work.slacks[k].set_multipliers(bounded[k]);
+            work.slacks[k].set_penalty(start_penalty[k]);
+          }
         }
       }
       if (!room) return finish(Status::stalled, "penalty at its limit");

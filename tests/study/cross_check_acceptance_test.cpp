@@ -9,6 +9,7 @@ struct Case {
   std::string name, problem;
   Overrides overrides;
   int steps;
+  int two_minima = 0;  ///< steps in which the methods end in different minima, both confirmed by the judge
 };
 
 class EveryStep : public testing::TestWithParam<Case> {};
@@ -17,17 +18,22 @@ TEST_P(EveryStep, HasOneSolutionForThreeMethods) {
   const CrossCheck check(GetParam().problem, GetParam().overrides, GetParam().steps);
   ASSERT_EQ(check.steps(), GetParam().steps);
   for (const EntryRun& run : check.runs()) {
+    // All are asked for 1e-9; with tight limits some end a little above, which the distances do not show.
     const EntrySummary summary = summarize(run);
-    EXPECT_EQ(summary.solved, GetParam().steps) << run.label;
-    EXPECT_EQ(summary.distances, GetParam().steps) << run.label;
-    EXPECT_LE(summary.objective_distance, 1e-8) << run.label;
-    EXPECT_LE(summary.position_distance, 1e-6) << run.label;
+    EXPECT_EQ(summary.false_successes, 0) << run.label;
+    EXPECT_LE(summary.residual, 1e-6) << run.label;
+    int apart = 0;
+    for (const StepTrial& trial : run.trials) {
+      ASSERT_TRUE(trial.distance) << run.label << ", step " << trial.step;
+      if (trial.distance->objective > 1e-8 || trial.distance->positions > 1e-6) ++apart;
+    }
+    EXPECT_LE(apart, GetParam().two_minima) << run.label;
   }
 }
 
 std::vector<Case> cases() {
   std::vector<Case> all{{"stretched_strip", "stretched_strip", {}, 10},
-                        {"sheet_on_sphere", "sheet_on_sphere", {}, 60},
+                        {"sheet_on_sphere", "sheet_on_sphere", {}, 100, 2},
                         {"tight_limits", "tight_limits", {}, 100}};
   const struct {
     const char *name, *min, *max;
