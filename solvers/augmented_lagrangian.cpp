@@ -94,7 +94,11 @@ struct AugmentedLagrangian::Run {
   Vector scratch;
 
   Run(const AugmentedLagrangianOptions& o, const Problem& p, const Budget& b, Workspace& w)
-      : options(o), problem(p), budget(b), work(w), newton(w.assembly, *w.system, p.fixed_variables, p.node_size, o.newton) {}
+      : options(o),
+        problem(p),
+        budget(b),
+        work(w),
+        newton(w.assembly, *w.system, p.fixed_variables, p.node_size, o.newton) {}
 
   void start(const WarmStart& warm);
   double automatic_penalty(const Constraint& constraint) const;
@@ -149,7 +153,8 @@ void AugmentedLagrangian::Run::start(const WarmStart& warm) {
   for (std::size_t k = 0; k < work.slacks.size(); ++k) {
     EliminatedSlack& slack = work.slacks[k];
     const Index rows = slack.multipliers().size();
-    slack.set_multipliers(options.warm_multipliers && k < warm.multipliers.size() ? warm.multipliers[k] : Vector(Vector::Zero(rows)));
+    slack.set_multipliers(options.warm_multipliers && k < warm.multipliers.size() ? warm.multipliers[k]
+                                                                                  : Vector(Vector::Zero(rows)));
     const double automatic = options.fixed_penalty > 0 ? options.fixed_penalty
                              : k < warm.penalties.size() && warm.penalties[k] > 0
                                  ? warm.penalties[k]

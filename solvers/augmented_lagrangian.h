@@ -21,8 +21,8 @@ struct AugmentedLagrangianOptions {
   /// How pins are kept: substituted; or in the null space of their equations (null_space_system.h), without the central
   /// path, as a check of the former.
   bool null_space = false;
-  double fixed_penalty = 0;  ///< positive: every constraint's penalty, which then never grows and is no multiple
-  bool warm_multipliers = true;  ///< start at the multipliers of the step before
+  double fixed_penalty = 0;         ///< positive: every constraint's penalty, which then never grows and is no multiple
+  bool warm_multipliers = true;     ///< start at the multipliers of the step before
   CentralPathOptions central_path;  ///< tried first; the loop of multiplier updates takes over where it fails
   NewtonOptions newton;
   void validate() const;

@@ -7,10 +7,10 @@
 
 namespace taut {
 
-/// Newton steps in the null space of linear equalities: x = x0 + Z w with a sparse basis Z (linalg/null_space.h), w from
-/// (Z^T H Z) w = -Z^T g, factorised by Eigen's simplicial Cholesky. It shares neither order nor factorisation nor the
-/// treatment of fixed variables with SubstitutedSystem, which makes it a check of that, not a fast solver: the product
-/// is formed anew in each iteration.
+/// Newton steps in the null space of linear equalities: x = x0 + Z w with a sparse basis Z (linalg/null_space.h), w
+/// from (Z^T H Z) w = -Z^T g, factorised by Eigen's simplicial Cholesky. It shares neither order nor factorisation nor
+/// the treatment of fixed variables with SubstitutedSystem, which makes it a check of that, not a fast solver: the
+/// product is formed anew in each iteration.
 class NullSpaceSystem final : public NewtonSystem {
  public:
   /// The equalities are those that hold the problem's fixed variables. The assembly, which is borrowed, has no fixed

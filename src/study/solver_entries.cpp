@@ -19,7 +19,9 @@ const std::vector<SolverEntry>& solver_entries() {
       {"penalised_pins",
        "the default solver with pins as penalised rows",
        {{"solver.method", "augmented_lagrangian"}, {"solver.pins", "penalised"}}},
-      {"null_space", "pins in the null space of their equations, another factorisation", {{"solver.method", "null_space"}}},
+      {"null_space",
+       "pins in the null space of their equations, another factorisation",
+       {{"solver.method", "null_space"}}},
       {"ipopt", "interior point, by Ipopt", {{"solver.method", "ipopt"}}},
       {"nlopt", "sequential quadratic programming, by NLopt; small problems only", {{"solver.method", "nlopt"}}},
   };

@@ -42,7 +42,8 @@ class CrossCheck {
   const std::vector<EntryRun>& runs() const { return runs_; }
   /// The largest difference of a multiplier between the first method and another, relative to the step's largest.
   double multiplier_difference(std::size_t run, std::size_t step) const {
-    const auto &first = runs_.front().trials[step].result.multipliers, &other = runs_[run].trials[step].result.multipliers;
+    const auto &first = runs_.front().trials[step].result.multipliers,
+               &other = runs_[run].trials[step].result.multipliers;
     double difference = 0, largest = 0;
     for (std::size_t k = 0; k < first.size(); ++k) {
       difference = std::max(difference, (first[k] - other[k]).cwiseAbs().maxCoeff());

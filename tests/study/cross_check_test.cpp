@@ -25,9 +25,8 @@ int solved_with_a_fixed_penalty(const std::string& form) {
   const std::string file = std::string(TAUT_CATALOGUE) + "/coincident_stretches.json";
   const std::vector<State> states = states_of(read_scene(file), 20);
   EXPECT_EQ(states.size(), 20u);  // the default solver solves every step
-  const Scene scene = read_scene(file, {{"solver.central_path", "false"},
-                                        {"solver.fixed_penalty", "2000"},
-                                        {"constraints.limit.form", form}});
+  const Scene scene = read_scene(
+      file, {{"solver.central_path", "false"}, {"solver.fixed_penalty", "2000"}, {"constraints.limit.form", form}});
   const auto solver = build_solver(scene, 1);
   EntryRun run;
   run.trials = compare_steps(scene, states, *solver);

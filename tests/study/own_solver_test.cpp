@@ -24,8 +24,8 @@ TEST(OwnSolver, OfTheGuideIsComparedAndItsFalseSuccessesCounted) {
 
 TEST(OwnSolver, IsTheOneInTheGuide) {
   const std::string guide = read_bytes(TAUT_SOURCE_DIR "/docs/guide/compare.md");
-  EXPECT_THAT(guide,
-              testing::HasSubstr("```cpp\n" + read_bytes(TAUT_SOURCE_DIR "/tests/install_example/own_solver.cpp") + "```"));
+  EXPECT_THAT(guide, testing::HasSubstr("```cpp\n" +
+                                        read_bytes(TAUT_SOURCE_DIR "/tests/install_example/own_solver.cpp") + "```"));
 }
 
 }  // namespace
