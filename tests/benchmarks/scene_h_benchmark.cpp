@@ -1,6 +1,6 @@
 // Whole time steps of scene H, through the same calls as `taut solve` but without judging, files and pictures in the
-// measured time. One iteration is a run from the start: 100 steps (one second) up to 32 cells, 30 steps on finer
-// grids, where the cloth is still falling and the limit is active near the pins only. Runs are repeatable to the
+// measured time. One iteration is a run from the start: 100 steps (one second) up to 64 cells, 30 steps at
+// 128 and 10 at 256, where the cloth is still falling and the limit is active near the pins only. Runs are repeatable to the
 // last bit, so the counters other than seconds are exact; compare seconds on a quiet machine only.
 
 #include <benchmark/benchmark.h>
@@ -52,7 +52,7 @@ void scene_h_steps(benchmark::State& state, const Limit& limit) {
   const int cells = static_cast<int>(state.range(0)), threads = static_cast<int>(state.range(1));
   Scene scene = scene_h(cells, limit);
   scene.solver.central_path = state.range(2) != 0;
-  scene.time.steps = cells <= 32 ? 100 : 30;
+  scene.time.steps = cells <= 64 ? 100 : cells <= 128 ? 30 : 10;
   for (auto _ : state) {
     const std::unique_ptr<Model> model = build_model(scene);
     Stepper stepper(*model, time_options(scene));
@@ -79,8 +79,9 @@ void once(benchmark::internal::Benchmark* benchmark) {
 
 BENCHMARK_CAPTURE(scene_h_steps, limit_0_9_to_1_1, Limit{0.9, 1.1})
     ->Apply(once)
-    ->ArgsProduct({{16, 32, 64, 128}, {1}, {1}})
+    ->ArgsProduct({{16, 32, 64, 128, 256}, {1}, {1}})
     ->Args({128, 2, 1})
+    ->Args({256, 2, 1})
     ->ArgsProduct({{16, 32}, {1}, {0}});
 BENCHMARK_CAPTURE(scene_h_steps, no_limit, Limit{})->Apply(once)->Args({32, 1, 1})->Args({64, 1, 1});
 BENCHMARK_CAPTURE(scene_h_steps, limit_to_10, Limit{{}, 10.0})->Apply(once)->Args({32, 1, 1})->Args({64, 1, 1});
