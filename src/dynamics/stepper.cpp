@@ -43,6 +43,7 @@ std::vector<const Energy*> energies_of(const Model& model, bool dynamic) {
   }
   append(energies, model.dead_loads);
   append(energies, model.pressures);
+  append(energies, model.end_moments);
   for (const auto& load : model.lagged_loads) energies.push_back(load.energy.get());
   return energies;
 }
@@ -120,6 +121,7 @@ void Stepper::place(double time) {
   const double factor = dynamic() ? 1.0 : time;
   for (const auto& load : model_.dead_loads) load->set_factor(factor);
   for (const auto& pressure : model_.pressures) pressure->set_factor(factor);
+  for (const auto& moment : model_.end_moments) moment->set_factor(factor);
   for (const auto& load : model_.lagged_loads) load.energy->set_factor(factor);
 }
 
@@ -184,6 +186,7 @@ const Problem& Stepper::prepare() {
     load.forces(state_.positions, state_.velocities, forces);
     load.energy->set_forces(forces);
   }
+  for (const auto& moment : model_.end_moments) moment->set_reference(state_.positions);
   problem_.initial_guess = state_.positions;
   if (dynamic()) problem_.initial_guess += options_.step * state_.velocities;
   for (std::size_t k = 0; k < model_.pins.size(); ++k) {

@@ -71,7 +71,8 @@ class Stepper {
   /// Takes the positions, multipliers and penalties of the result as the end of the step that prepare() posed.
   void accept(const Result& result);
 
-  /// Energies at the present state, J, by name: "kinetic", then each elastic energy and each load with a potential.
+  /// Energies at the present state, J, by name: "kinetic", then each elastic energy and each load with a potential,
+  /// but for end moments, whose potential depends on how often they have turned.
   std::vector<std::pair<std::string, double>> energies() const;
 
  private:
