@@ -168,6 +168,12 @@ std::vector<int> BodyShape::nodes_at(int vertex, Surface surface) const {
   return all;
 }
 
+std::vector<int> BodyShape::mean_nodes(int vertex, Surface surface) const {
+  const int low = (levels() - 1) / 2;
+  if (surface == Surface::mid && layered->layers % 2 == 1) return {node(vertex, low), node(vertex, low + 1)};
+  return loaded_nodes(vertex, surface);
+}
+
 std::vector<int> BodyShape::loaded_nodes(int vertex, Surface surface) const {
   if (surface != Surface::both || !layered) return {node(vertex, level(surface))};
   return {node(vertex, 0), node(vertex, levels() - 1)};

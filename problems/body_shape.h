@@ -31,6 +31,8 @@ struct BodyShape {
   int level(scene::Surface surface) const;
   /// The scene's nodes at a vertex on a surface; `both` counts those between.
   std::vector<int> nodes_at(int vertex, scene::Surface surface) const;
+  /// Those whose mean position is that of the surface: two for `both`, and for `mid` inside a prism.
+  std::vector<int> mean_nodes(int vertex, scene::Surface surface) const;
   /// Those of them that share a force on the vertex: bottom and top for `both`.
   std::vector<int> loaded_nodes(int vertex, scene::Surface surface) const;
   /// Length of the edge from a triangle's corner k to its next one, m.

@@ -109,7 +109,7 @@ std::vector<int> probed_nodes(const Scene& scene, const std::vector<BodyShape>& 
   const std::string pointer = "/output/probes/" + probe.name + "/select";
   for (const int vertex : selected_vertices(scene, shape, probe.select, pointer)) {
     const std::vector<int> at = probe.quantity == scene::Quantity::force ? shape.nodes_at(vertex, probe.surface)
-                                                                         : shape.loaded_nodes(vertex, probe.surface);
+                                                                         : shape.mean_nodes(vertex, probe.surface);
     nodes.insert(nodes.end(), at.begin(), at.end());
   }
   return nodes;

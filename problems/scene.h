@@ -35,6 +35,7 @@ struct Time {
   double step = 0;  ///< s; 1 / steps for quasi_static, so that time k * step always holds
   int steps = 1;
   double spectral_radius = 0.8;
+  int halvings = 0;  ///< of a static load step that is not solved
 };
 
 struct Grid {

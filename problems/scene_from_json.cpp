@@ -43,6 +43,7 @@ class SceneReader : public ShellReader {
                                                                 {"static", Integrator::quasi_static}});
     result.steps = json["steps"];
     result.spectral_radius = json["spectral_radius"];
+    result.halvings = json["halvings"];
     if (result.integrator == Integrator::quasi_static) {
       result.step = 1.0 / result.steps;
     } else if (json.contains("step")) {
@@ -273,7 +274,8 @@ class SceneReader : public ShellReader {
     } else {
       if (!json.contains("select")) missing(pointer + "/select", "a selection");
       result.select = selection(json["select"], result.body, pointer + "/select");
-      result.surface = surface_of(json, result.body, pointer, Surface::both);
+      const Body& on = (*bodies_)[static_cast<std::size_t>(result.body)];
+      result.surface = surface(json, on, pointer, Surface::both, !quantity.starts_with("force_"));
       result.quantity = quantity == "displacement"              ? Quantity::displacement_length
                         : quantity.starts_with("displacement_") ? Quantity::displacement
                         : quantity.starts_with("force_")        ? Quantity::force
@@ -290,7 +292,7 @@ class SceneReader : public ShellReader {
     if (relative.has_value() == absolute.has_value())
       throw InputError(source_, pointer,
                        std::string("found ") + (relative ? "both" : "neither") +
-                           " \"relative\" and \"absolute\", allowed: exactly one of them");
+                           " of \"relative\" and \"absolute\", allowed: exactly one of them");
     return {json["value"], relative ? *relative : *absolute, relative.has_value(), json["source"]};
   }
 

@@ -104,7 +104,8 @@ PrismShellOptions ShellReader::options(const Json& json, const std::string& poin
   return result;
 }
 
-Surface ShellReader::surface(const Json& json, const Body& body, const std::string& pointer, Surface otherwise) const {
+Surface ShellReader::surface(const Json& json, const Body& body, const std::string& pointer, Surface otherwise,
+                             bool inside_prisms) const {
   if (!json.contains("surface")) return otherwise;
   const std::string name = json["surface"];
   if (!body.shell)
@@ -114,7 +115,7 @@ Surface ShellReader::surface(const Json& json, const Body& body, const std::stri
       json["surface"],
       {{"both", Surface::both}, {"bottom", Surface::bottom}, {"top", Surface::top}, {"mid", Surface::mid}});
   const int prisms = number_of_prisms(body.shell->layers);
-  if (surface == Surface::mid && prisms % 2 != 0)
+  if (surface == Surface::mid && prisms % 2 != 0 && !inside_prisms)
     refuse(pointer + "/surface",
            "\"mid\" of " + body.name + ", which has " + std::to_string(prisms) + " prisms through its thickness",
            "both, bottom, top (no node is in the middle of an odd number of prisms)");

@@ -15,9 +15,9 @@ class ShellReader : public JsonReader {
   /// Throws InputError for keys of thick shells and for a thickness or density that is missing.
   void check_cloth(const Json& body, const std::string& pointer) const;
   /// The surface that a constraint, load or probe names; `otherwise` where it names none. Throws InputError where the
-  /// body is not a thick shell, and for the middle of an odd number of prisms.
+  /// body is not a thick shell, and, unless `inside_prisms`, for the middle of an odd number of prisms.
   scene::Surface surface(const Json& json, const scene::Body& body, const std::string& pointer,
-                         scene::Surface otherwise) const;
+                         scene::Surface otherwise, bool inside_prisms = false) const;
 
  private:
   std::vector<scene::Layer> layers(const Json& body, const std::string& pointer) const;

@@ -51,9 +51,12 @@ Lines energies() {
           {"membrane stvk", "plane-stress St. Venant-Kirchhoff: linear in the Green strain (key: membrane.law)"},
           {"membrane neo_hookean", "plane-stress neo-Hookean: resists collapse of a triangle (key: membrane.law)"},
           {"bending", "discrete hinges at the inner edges, with rest angles (key: bending)"},
+          {"thick_shell", "six-node prisms in layers, stvk, neo_hookean or with fibres (keys: model, material, layers)"},
           {"damping", "Rayleigh damping by mass and by stiffness (key: damping)"},
           {"point_load", "a constant force at vertices (loads, type)"},
           {"edge_load", "a constant force per length along boundary edges (loads, type)"},
+          {"surface_load", "a constant force per area (loads, type)"},
+          {"end_moment", "a moment that turns an edge of a thick shell about a fixed axis (loads, type)"},
           {"pressure", "pressure times enclosed volume, for closed surfaces or fixed boundaries (loads, type)"},
           {"wind", "air drag; it has no potential and is held constant within a step (loads, type)"}};
 }

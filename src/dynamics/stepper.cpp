@@ -162,8 +162,8 @@ void Stepper::follow_scripts(EndOfStep& end) const {
   }
 }
 
-const Problem& Stepper::prepare() {
-  const double end_time = time_at(state_.step + 1);
+const Problem& Stepper::prepare(double part) {
+  const double end_time = dynamic() || part == 1 ? time_at(state_.step + 1) : (state_.step + part) / options_.steps;
   place(end_time);
   if (dynamic()) {
     const EndOfStep end = end_of_step();
@@ -195,6 +195,13 @@ const Problem& Stepper::prepare() {
     problem_.initial_guess[model_.pins[k].variable] = value;
   }
   return problem_;
+}
+
+void Stepper::hold(const Result& result) {
+  check_size(result.x, state_.positions.size(), "result.x");
+  state_.positions = result.x;
+  state_.warm.multipliers = result.multipliers;
+  state_.warm.penalties = result.penalties;
 }
 
 void Stepper::accept(const Result& result) {

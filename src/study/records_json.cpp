@@ -260,7 +260,7 @@ std::string summary_text(const RunSummary& s) {
   json["worst_elements_step"] = s.worst_elements_step;
   json["worst_elements"] = worst_elements_json(s);
   json["unfinished_step"] = unfinished_json(s.unfinished);
-  if (!s.probes.empty()) json["probes"] = probes_json(s);
+  json["probes"] = probes_json(s);
   json["counts"] = counts_json(s.counts);
   json["counts"]["symbolic_analyses"] = s.counts.symbolic_analyses;
   json["counts"]["matrix_allocations"] = s.counts.matrix_allocations;

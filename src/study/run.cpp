@@ -12,6 +12,7 @@
 #include "problems/build.h"
 #include "study/examine.h"
 #include "study/frame_output.h"
+#include "study/load_step.h"
 #include "study/machine.h"
 
 namespace taut {
@@ -147,8 +148,8 @@ void Run::loop() {
 
 /// False where the run ends here.
 bool Run::step() {
-  const Problem& problem = stepper_->prepare();
-  const Result result = solver_->solve(problem, stepper_->state().warm, budget_);
+  const Result result = solve_step(*stepper_, *solver_, scene_.solver.tolerance, scene_.time.halvings, budget_);
+  const Problem& problem = stepper_->problem();
   const bool cut_short = (result.status == Status::interrupted && budget_.interrupted()) ||
                          (result.status == Status::time_limit && budget_.out_of_time());
   if (cut_short) {

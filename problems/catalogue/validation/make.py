@@ -9,7 +9,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 E = 1e9  # Pa, where a result does not depend on it
 
 
-def write(name, description, look_for, steps, body, constraints, loads, probes, stationarity=None, cells=""):
+def write(name, description, look_for, steps, body, constraints, loads, probes, stationarity=None):
     document = {"format": 1, "name": name, "description": description, "look_for": look_for}
     document["time"] = {"integrator": "static", "steps": steps}
     document["bodies"] = {"shell": {"model": "thick_shell", **body}}
@@ -20,9 +20,9 @@ def write(name, description, look_for, steps, body, constraints, loads, probes, 
     (HERE / f"{name}.json").write_text(json.dumps(document, indent=2) + "\n")
 
 
-def probe(quantity, select, factor, value, source, **tolerance):
+def probe(quantity, select, factor, value, source, surface="both", **tolerance):
     expected = {"value": value, **tolerance, "source": source}
-    return {"quantity": quantity, "select": select, "factor": factor, "expected": expected}
+    return {"quantity": quantity, "select": select, "surface": surface, "factor": factor, "expected": expected}
 
 
 def isotropic(young, poisson, law="stvk"):
@@ -42,7 +42,7 @@ UNIFORM = {("simply_supported", 10): 0.004272842263, ("simply_supported", 100): 
            ("simply_supported", 1000): 0.004062373717, ("clamped", 10): 0.001504625612,
            ("clamped", 100): 0.001267856681, ("clamped", 1000): 0.001265344503}
 POINT = {"simply_supported": 0.01160083977, "clamped": 0.005612}  # w D/(P a^2) by Kirchhoff's theory
-LIFT = 0.02  # of the thickness: the linear result within 1e-4
+LIFT = 0.02  # of the thickness: the linear result within 3e-4
 
 
 def plates():
@@ -52,7 +52,7 @@ def plates():
         body = {"mesh": QUARTER, "thickness": t, "density": 1000, "material": isotropic(E, 0.3)}
         supports = {**SYMMETRY, **(SIMPLE if edges == "simply_supported" else CLAMPED)}
         words = edges.replace("_", " ")
-        note = f"The deflection is {LIFT} of the thickness, so that the linear theory holds within 1e-4."
+        note = f"The deflection is {LIFT} of the thickness, so that the linear theory holds within 3e-4."
         load = LIFT * t * stiffness / value
         write(f"plate_{edges}_{slenderness}", f"A square plate, {words}, a/t = {slenderness}, uniform load; a quarter.",
               note, 1, body, supports, {"load": {"type": "surface_load", "force_per_area": [0, 0, load]}},
@@ -69,7 +69,7 @@ def plates():
                           "w D/(P a^2), Kirchhoff's theory, series", relative=0.01)}, STATIONARITY.get(slenderness))
 
 
-STATIONARITY = {}
+STATIONARITY = {1000: 1e-5}  # a thinner plate has smaller forces and the same round-off
 
 
 def pagano():
@@ -81,7 +81,6 @@ def pagano():
                       "nu_TT": 0.25, "fibre_degrees": degrees} for degrees in (0, 90, 0)]
             layers = [{"thickness": h / 3, "density": 1500, "material": ply, "prisms": prisms} for ply in plies]
             load = LIFT * h * 100 * across * h**3 / value
-            inner = {"quantity": "displacement_z", "select": CENTRE}
             write(f"pagano_{slenderness}_{prisms}",
                   f"Pagano's 0/90/0 plate, a/h = {slenderness}, {prisms} prism(s) a ply, sinusoidal load on the top; a quarter.",
                   "Known misses: one prism a ply cannot follow the shear through the thickness of thick plates (a/h = 4 and 10).",
@@ -89,7 +88,8 @@ def pagano():
                   {"load": {"type": "surface_load", "force_per_area": [0, 0, load], "surface": "top",
                             "half_waves": [[1, 0, 0], [0, 1, 0]]}},
                   {"w": probe("displacement_z", CENTRE, 100 * across * h**3 / load, value,
-                              "100 E_T h^3 w/(q a^4), three-dimensional elasticity (Pagano 1970), exact", relative=0.01)})
+                              "100 E_T h^3 w/(q a^4) in the middle, three-dimensional elasticity (Pagano 1970), exact",
+                              surface="mid", relative=0.01)})
 
 
 # --- meshes -----------------------------------------------------------------------------------------------------------
@@ -143,7 +143,7 @@ def scordelis_lo(cells=40):
     corner = (cells + 1) ** 2 - 1
     write("scordelis_lo", "Scordelis and Lo's roof under its weight on diaphragms; a quarter.",
           "Two surfaces are given: normals of the facets would lean at the plane of symmetry. The load is 1/1000 of the usual one, for a linear result.", 1,
-          {"mesh": {"file": "scordelis_lo_bottom.obj"}, "top": {"file": "scordelis_lo_top.obj"}, "density": 36 / 9.81 / 1,
+          {"mesh": {"file": "scordelis_lo_bottom.obj"}, "top": {"file": "scordelis_lo_top.obj"}, "density": 36,
            "material": isotropic(4.32e8, 0)},
           {"diaphragm": {"select": column(cells, cells, 0), "axes": "yz"},
            "symmetry_x": {"select": column(cells, cells, cells), "axes": "x"},
@@ -210,7 +210,8 @@ def elastica():
                                           (4, 0.328941242, 0.669964181), (10, 0.554995598, 0.810609025)):
         t = 0.1
         source = "elliptic integrals (Bisshopp and Drucker 1945), over L"
-        write(f"elastica_{alpha}", f"A cantilever, L/t = 100, under a dead end load P with P L^2/EI = {alpha}; EI = 1, nu = 0.", "", max(4, alpha),
+        write(f"elastica_{alpha}", f"A cantilever, L/t = 100, under a dead end load P with P L^2/EI = {alpha}; EI = 1, nu = 0.",
+              "The tip's place; with L/t = 100 shear and stretch count for less than 4e-4 of the length.", max(4, alpha),
               {"mesh": STRIP, "thickness": t, "density": 1, "material": isotropic(12 / t**3, 0)}, HELD,
               {"end": {"type": "edge_load", "select": TIP, "force_per_length": [0, 0, alpha / 100]}},
               {"x": probe("x", TIP, 0.1, 1 - shortening, source, absolute=0.005),
