@@ -1,5 +1,6 @@
 #include "problems/shell_from_json.h"
 
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 namespace taut {
