@@ -146,6 +146,23 @@ TEST_F(BuildShell, SharesLoadsBetweenItsSurfaces) {
   EXPECT_GT(total(waves).z(), 1);  // only the vertices at x = 1 carry it: sin(pi x/2) is 0 at the ends
 }
 
+TEST_F(BuildShell, PressesOnTheSurfaceThatIsNamed) {
+  const auto pressed = [&](const std::string& held, const std::string& surface) {
+    return R"("constraints": {"p": {"type": "pin", "body": "s", "select": {"boundary": true}, "surface": ")" + held +
+           R"("}}, "loads": {"l": {"type": "pressure", "body": "s", "pressure": 3)" + surface + "}}";
+  };
+  for (const auto& [surface, level] : {std::pair{"top", 1}, std::pair{"bottom", 0}}) {
+    const auto built = model(single, pressed(surface, R"(, "surface": ")" + std::string(surface) + "\""));
+    const Vector forces = forces_of(*built->pressures.at(0), built->positions);
+    for (Index v = 0; v < 6; ++v) {
+      EXPECT_GT(forces[3 * (2 * v + level) + 2], 0) << surface;
+      EXPECT_EQ(forces[3 * (2 * v + 1 - level) + 2], 0) << surface;
+    }
+  }
+  EXPECT_THAT(error(single, pressed("bottom", "")),
+              testing::HasSubstr("found a boundary vertex of s that can move (0, along x)"));
+}
+
 TEST_F(BuildShell, TurnsAnEdgeByTheWholeMoment) {
   const auto built = model(single, R"("loads": {"m": {"type": "end_moment", "body": "s", "select": {"edges": ["x1"]},
     "moment_per_length": [0, -3, 0]}})");

@@ -129,6 +129,24 @@ TEST_F(Probes, GoOnWithAResumedRun) {
   EXPECT_EQ(csv(), whole);
 }
 
+TEST_F(Probes, OfAShellInFreeFallFollowGravity) {
+  for (const char* mass : {"lumped", "consistent"}) {
+    std::ofstream(path("fall.json")) << R"({
+      "format": 1, "time": {"integrator": "bdf2", "step": 0.1, "steps": 5}, "gravity": [0, 0, -10],
+      "bodies": {"s": {"model": "thick_shell", "mesh": {"grid": {"size": [1, 1], "cells": [2, 2]}}, "mass": ")"
+                                     << mass << R"(",
+        "layers": [
+          {"thickness": 0.1, "density": 5, "material": {"law": "neo_hookean", "young_modulus": 1e4, "poisson_ratio": 0.3}},
+          {"thickness": 0.2, "density": 1, "material": {"law": "stvk", "young_modulus": 1e3, "poisson_ratio": 0}}]}},
+      "output": {"probes": {"fallen": {"quantity": "displacement", "select": {"all": true}},
+                            "strained": {"quantity": "energy"}}}})";
+    const RunSummary summary = solve(read_scene(path("fall.json")));
+    EXPECT_EQ(summary.status, Status::solved) << summary.message;
+    EXPECT_NEAR(value(summary, "fallen"), 0.5 * 10 * 0.25, 1e-6) << mass;
+    EXPECT_NEAR(value(summary, "strained"), 0, 1e-9) << mass;
+  }
+}
+
 /// A strip rolled up to a half circle in one load step, which is more than Newton's method can do in 60 systems.
 class LoadParts : public Probes {
  protected:
