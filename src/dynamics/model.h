@@ -60,7 +60,7 @@ struct Model {
   };
   std::vector<LaggedLoad> lagged_loads;  ///< wind
   std::vector<std::unique_ptr<Constraint>> constraints;
-  std::vector<PinnedVariable> pins;  ///< ascending variables
+  std::vector<PinnedVariable> pins;      ///< ascending variables
   std::vector<std::vector<int>> probed;  ///< the vertices of each of Scene::output.probes
   /// Moves the obstacles to where they are at `time`; empty where none move.
   std::vector<std::function<void(double time)>> movers;

@@ -7,8 +7,8 @@
 namespace taut {
 
 /// A moment on the directors of a shell's edge about a fixed axis: W(x) = -sum_k m_k phi_k(x), with phi_k the angle by
-/// which director k, from the bottom to the top node, has turned about the axis since set_reference(). It has this potential because the axis
-/// is fixed; the forces on the two nodes are a couple that follows the director.
+/// which director k, from the bottom to the top node, has turned about the axis since set_reference(). It has this
+/// potential because the axis is fixed; the forces on the two nodes are a couple that follows the director.
 ///
 /// Angles count from a reference direction and jump half a turn away from it; set_reference() moves it along, so a step
 /// may turn an edge by less than half a turn.
