@@ -33,7 +33,7 @@ Vector3 JsonReader::direction(const Json& json, const std::string& pointer) cons
 }
 
 std::filesystem::path JsonReader::mesh_path(const Json& json, const std::string& pointer) const {
-  const std::filesystem::path path = folder_ / json.get<std::string>();
+  std::filesystem::path path = folder_ / json.get<std::string>();
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored))
     refuse(pointer, json.dump(-1, ' ', false, Json::error_handler_t::replace),
