@@ -116,8 +116,8 @@ void SpectralBox::project(Index /*element*/, const double* z, double* nearest, d
   }
 }
 
-void SpectralBox::project_smoothed(Index /*element*/, const double* z, double epsilon, double* nearest,
-                                   double* inverse, double* rate) const {
+void SpectralBox::project_smoothed(Index /*element*/, const double* z, double epsilon, double* nearest, double* inverse,
+                                   double* rate) const {
   constexpr double root2 = std::numbers::sqrt2;
   const Eigen2 pair = eigen2(z[0], z[1] / root2, z[2]);
   const double y1 = pair.values[0], y2 = pair.values[1], gap = y1 - y2;

@@ -9,6 +9,7 @@
 #include "solvers/augmented_lagrangian.h"
 #include "solvers/ipopt.h"
 #include "solvers/nlopt.h"
+#include "solvers/penalised_pins.h"
 
 namespace taut {
 namespace {
@@ -73,11 +74,16 @@ std::unique_ptr<Solver> build_augmented_lagrangian(const Scene& scene, int threa
   options.central_path.enabled = scene.solver.central_path && !obstacles;
   options.penalty = scene.solver.penalty;
   options.penalty_growth = scene.solver.penalty_growth;
+  options.fixed_penalty = scene.solver.fixed_penalty;
+  options.warm_multipliers = scene.solver.warm_multipliers;
+  options.null_space = scene.solver.method == scene::SolverMethod::null_space;
   options.inner_tolerance_factor = scene.solver.inner_tolerance_factor;
   options.max_outer = scene.solver.max_outer;
   options.max_newton = scene.solver.max_newton;
   options.threads = threads;
-  return std::make_unique<AugmentedLagrangian>(options);
+  auto solver = std::make_unique<AugmentedLagrangian>(options);
+  if (!scene.solver.penalised_pins) return solver;
+  return std::make_unique<PenalisedPins>(std::move(solver), options.tolerances);
 }
 
 std::unique_ptr<Solver> build_ipopt(const Scene& scene) {
@@ -174,6 +180,7 @@ TimeOptions time_options(const Scene& scene) {
 std::unique_ptr<Solver> build_solver(const Scene& scene, int threads) {
   switch (scene.solver.method) {
     case scene::SolverMethod::augmented_lagrangian:
+    case scene::SolverMethod::null_space:
       return build_augmented_lagrangian(scene, threads);
     case scene::SolverMethod::ipopt:
       return build_ipopt(scene);

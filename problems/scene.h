@@ -212,7 +212,7 @@ struct Load {
 };
 
 enum class OnFailure { stop, proceed };
-enum class SolverMethod { augmented_lagrangian, ipopt, nlopt };
+enum class SolverMethod { augmented_lagrangian, null_space, ipopt, nlopt };
 struct IpoptSettings {
   int max_iterations = 500;
   bool warm_start = false;
@@ -227,6 +227,9 @@ struct Solver {
   bool central_path = true;
   double penalty = 1000;  ///< factor on the automatic first penalty
   double penalty_growth = 8;
+  double fixed_penalty = 0;  ///< 0: none
+  bool penalised_pins = false;
+  bool warm_multipliers = true;
   int max_outer = 100;
   int max_newton = 1000;  ///< per step
   double inner_tolerance_factor = 0.5;

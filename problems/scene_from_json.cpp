@@ -301,6 +301,7 @@ class SceneReader : public ShellReader {
   static scene::Solver solver(const Json& json) {
     scene::Solver result;
     result.method = choose<SolverMethod>(json["method"], {{"augmented_lagrangian", SolverMethod::augmented_lagrangian},
+                                                          {"null_space", SolverMethod::null_space},
                                                           {"ipopt", SolverMethod::ipopt},
                                                           {"nlopt", SolverMethod::nlopt}});
     const Json& tolerance = json["tolerance"];
@@ -308,6 +309,9 @@ class SceneReader : public ShellReader {
     result.central_path = json["central_path"];
     result.penalty = json["penalty"];
     result.penalty_growth = json["penalty_growth"];
+    result.fixed_penalty = json["fixed_penalty"];
+    result.penalised_pins = json["pins"] == "penalised";
+    result.warm_multipliers = json["warm_multipliers"];
     result.max_outer = json["max_outer"];
     result.max_newton = json["max_newton"];
     result.inner_tolerance_factor = json["inner_tolerance_factor"];

@@ -8,6 +8,7 @@
 
 #include "core/stopwatch.h"
 #include "solvers/eliminated_slack.h"
+#include "solvers/null_space_system.h"
 
 namespace taut {
 namespace {
@@ -36,6 +37,7 @@ void AugmentedLagrangianOptions::validate() const {
   newton.validate();
   central_path.validate();
   require(penalty > 0, "penalty must be positive");
+  require(fixed_penalty >= 0, "fixed_penalty must be positive, or 0 for none");
   require(penalty_growth > 1, "penalty_growth must exceed 1");
   require(max_penalty_growth >= 1, "max_penalty_growth must be at least 1");
   require(wanted_decrease > 0 && wanted_decrease < 1, "wanted_decrease must be between 0 and 1");
@@ -50,13 +52,21 @@ struct AugmentedLagrangian::Workspace {
   std::uint64_t topology = 0;
   std::deque<EliminatedSlack> slacks;
   Assembly assembly;
-  Cholesky cholesky;
+  std::unique_ptr<Cholesky> cholesky;  // null with the null space
+  std::unique_ptr<NewtonSystem> system;
 
-  Workspace(const Problem& problem, int threads)
+  Workspace(const Problem& problem, bool null_space, int threads)
       : topology(problem.topology),
         slacks(problem.constraints.size() ? make_slacks(problem) : std::deque<EliminatedSlack>{}),
-        assembly(problem.size(), terms(problem), problem.fixed_variables, threads),
-        cholesky((assembly.set_order(fill_reducing_order(assembly.graph())), assembly.matrix()), threads) {}
+        assembly(problem.size(), terms(problem), null_space ? std::vector<int>{} : problem.fixed_variables, threads) {
+    if (null_space) {
+      system = std::make_unique<NullSpaceSystem>(assembly, problem);
+    } else {
+      assembly.set_order(fill_reducing_order(assembly.graph()));
+      cholesky = std::make_unique<Cholesky>(assembly.matrix(), threads);
+      system = std::make_unique<SubstitutedSystem>(assembly, *cholesky);
+    }
+  }
 
   static std::deque<EliminatedSlack> make_slacks(const Problem& problem) {
     std::deque<EliminatedSlack> slacks;
@@ -84,7 +94,11 @@ struct AugmentedLagrangian::Run {
   Vector scratch;
 
   Run(const AugmentedLagrangianOptions& o, const Problem& p, const Budget& b, Workspace& w)
-      : options(o), problem(p), budget(b), work(w), newton(w.assembly, w.cholesky, p.node_size, o.newton) {}
+      : options(o),
+        problem(p),
+        budget(b),
+        work(w),
+        newton(w.assembly, *w.system, p.fixed_variables, p.node_size, o.newton) {}
 
   void start(const WarmStart& warm);
   double automatic_penalty(const Constraint& constraint) const;
@@ -139,8 +153,10 @@ void AugmentedLagrangian::Run::start(const WarmStart& warm) {
   for (std::size_t k = 0; k < work.slacks.size(); ++k) {
     EliminatedSlack& slack = work.slacks[k];
     const Index rows = slack.multipliers().size();
-    slack.set_multipliers(k < warm.multipliers.size() ? warm.multipliers[k] : Vector(Vector::Zero(rows)));
-    const double automatic = k < warm.penalties.size() && warm.penalties[k] > 0
+    slack.set_multipliers(options.warm_multipliers && k < warm.multipliers.size() ? warm.multipliers[k]
+                                                                                  : Vector(Vector::Zero(rows)));
+    const double automatic = options.fixed_penalty > 0 ? options.fixed_penalty
+                             : k < warm.penalties.size() && warm.penalties[k] > 0
                                  ? warm.penalties[k]
                                  : options.penalty * automatic_penalty(slack.constraint());
     slack.set_penalty(automatic);
@@ -200,6 +216,7 @@ bool AugmentedLagrangian::Run::update_penalties() {
         relative > options.tolerances.feasibility && relative > options.wanted_decrease * last_violation[k];
     last_violation[k] = relative;
     if (!too_slow) continue;
+    if (options.fixed_penalty > 0) continue;
     const double grown = work.slacks[k].penalty() * options.penalty_growth;
     if (grown > options.max_penalty_growth * start_penalty[k]) {
       room = false;
@@ -250,13 +267,13 @@ bool AugmentedLagrangian::Run::closest_compromise(NewtonState& state) {
 /// Tries the central path from the warm start; on success `result` and `judged` hold the solution, else the warm start
 /// is restored.
 bool AugmentedLagrangian::Run::central_path() {
-  if (!options.central_path.enabled || work.slacks.empty()) return false;
+  if (!options.central_path.enabled || !work.cholesky || work.slacks.empty()) return false;
   const Result start = result;
   const Residuals start_judged = judged;
   for (EliminatedSlack& slack : work.slacks) slack.set_penalty(options.central_path.penalty_fraction * slack.penalty());
   Vector x = result.x;
   const bool solved = follow_central_path(
-      work.assembly, work.cholesky, work.slacks, problem.node_size, judged.force_scale,
+      work.assembly, *work.cholesky, work.slacks, problem.node_size, judged.force_scale,
       options.tolerances.stationarity * judged.force_scale, options.central_path, options.threads, x,
       [&](const Vector& candidate) {
         result.x = candidate;
@@ -329,15 +346,26 @@ void AugmentedLagrangian::Run::loop() {
     without_progress = falling || judged.feasibility <= options.tolerances.feasibility ? 0 : without_progress + 1;
     if (falling) first_violation = judged.feasibility;
     const bool room = update_penalties();
-    if (!room || without_progress >= 4) {
+    // A penalty fixed too low looks the same as an infeasible problem.
+    if (options.fixed_penalty == 0 && (!room || without_progress >= 4)) {
       const std::vector<Vector> bounded = best.multipliers;
       if (closest_compromise(state)) {
         result.x = state.x;
         result.multipliers = bounded;
         judged = residuals(problem, result);
-        if (judged.feasibility > options.tolerances.feasibility) {
+        // With a finite penalty the energies violate feasible constraints a little, too: a point that was much closer
+        // tells that there is more to gain.
+        const bool closest = best_judged.feasibility > 0.5 * judged.feasibility;
+        if (judged.feasibility > options.tolerances.feasibility && closest) {
           return finish(Status::infeasible,
                         "no nearby point satisfies the constraints; this is the closest compromise");
+        }
+        if (!closest) {
+          state.x = best.x;
+          for (std::size_t k = 0; k < work.slacks.size(); ++k) {
+            work.slacks[k].set_multipliers(bounded[k]);
+            work.slacks[k].set_penalty(start_penalty[k]);
+          }
         }
       }
       if (!room) return finish(Status::stalled, "penalty at its limit");
@@ -353,9 +381,9 @@ AugmentedLagrangian::AugmentedLagrangian(AugmentedLagrangianOptions options) : o
 AugmentedLagrangian::~AugmentedLagrangian() = default;
 
 AugmentedLagrangian::Size AugmentedLagrangian::size() const {
-  if (!workspace_) return {};
-  return {workspace_->cholesky.factor_flops(), workspace_->cholesky.factor_nonzeros(),
-          workspace_->assembly.memory_bytes() + workspace_->cholesky.memory_bytes()};
+  if (!workspace_ || !workspace_->cholesky) return {};
+  return {workspace_->cholesky->factor_flops(), workspace_->cholesky->factor_nonzeros(),
+          workspace_->assembly.memory_bytes() + workspace_->cholesky->memory_bytes()};
 }
 
 Result AugmentedLagrangian::solve(const Problem& problem, const WarmStart& warm, const Budget& budget) {
@@ -368,7 +396,7 @@ Result AugmentedLagrangian::solve(const Problem& problem, const WarmStart& warm,
       const Stopwatch analysis_watch(analysis);
       problem.validate();
       workspace_.reset();
-      workspace_ = std::make_unique<Workspace>(problem, options_.threads);
+      workspace_ = std::make_unique<Workspace>(problem, options_.null_space, options_.threads);
       analysed = true;
     }
     Run run(options_, problem, budget, *workspace_);

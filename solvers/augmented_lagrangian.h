@@ -18,6 +18,11 @@ struct AugmentedLagrangianOptions {
   int max_outer = 100;                  ///< multiplier updates
   int max_newton = 1000;                ///< linear solves in all
   int threads = 1;
+  /// How pins are kept: substituted; or in the null space of their equations (null_space_system.h), without the central
+  /// path, as a check of the former.
+  bool null_space = false;
+  double fixed_penalty = 0;         ///< positive: every constraint's penalty, which then never grows and is no multiple
+  bool warm_multipliers = true;     ///< start at the multipliers of the step before
   CentralPathOptions central_path;  ///< tried first; the loop of multiplier updates takes over where it fails
   NewtonOptions newton;
   void validate() const;
@@ -34,7 +39,7 @@ class AugmentedLagrangian final : public Solver {
  public:
   explicit AugmentedLagrangian(AugmentedLagrangianOptions options = {});
   ~AugmentedLagrangian() override;
-  std::string name() const override { return "augmented_lagrangian"; }
+  std::string name() const override { return options_.null_space ? "null_space" : "augmented_lagrangian"; }
   Result solve(const Problem& problem, const WarmStart& warm, const Budget& budget) override;
 
   /// Flops and nonzeros of the factor, and bytes of the kept structures; zero before the first solve.

@@ -26,7 +26,6 @@ class CentralPath {
         force_scale_(force_scale),
         options_(options),
         threads_(threads),
-        centred_(options.centred),
         counts_(counts),
         timings_(timings),
         multiplier_steps_(slacks.size()),
@@ -107,13 +106,12 @@ class CentralPath {
       }
     }
     if (fraction != best_fraction) move(x, best_fraction, false);
-    if (best_fraction <= 0.25) centred_ = options_.careful;
     short_steps_ = best_fraction < 0.2 ? short_steps_ + 1 : 0;
     std::swap(x, trial_);
   }
 
  private:
-  bool centred() const { return worst_mismatch_ <= centred_ * width_; }
+  bool centred() const { return worst_mismatch_ <= options_.centred * width_; }
 
   /// Positions, multipliers and epsilon at a fraction of the step, measured.
   void move(const Vector& x, double fraction, bool with_matrix) {
@@ -158,7 +156,6 @@ class CentralPath {
   double force_scale_;
   const CentralPathOptions& options_;
   int threads_;
-  double centred_;
   Counts& counts_;
   Timings& timings_;
   int short_steps_ = 0;
@@ -177,7 +174,7 @@ void CentralPathOptions::validate() const {
   };
   require(penalty_fraction > 0, "penalty_fraction must be positive");
   require(reduction > 0 && reduction < 1, "reduction must be between 0 and 1");
-  require(centred > 0 && careful > 0, "centred and careful must be positive");
+  require(centred > 0, "centred must be positive");
   require(tolerated_rise >= 1, "tolerated_rise must be at least 1");
   require(smallest_width > 0, "smallest_width must be positive");
   require(max_iterations >= 1 && max_halvings >= 1, "max_iterations and max_halvings must be at least 1");

@@ -14,9 +14,8 @@ struct CentralPathOptions {
   bool enabled = true;
   double penalty_fraction = 0.03;  ///< of the augmented Lagrangian's penalty: the scale mu in y = c + lambda/mu
   double reduction = 0.1;          ///< of epsilon mu aimed at in one step
-  double centred = 100;            ///< mismatch over smoothing width below which a reduction is aimed at
-  double careful = 20;             ///< the same once a step has been cut to a quarter or less
-  double tolerated_rise = 3;       ///< of the merit in one step: it is lower only once the path is near
+  double centred = 20;             ///< mismatch over smoothing width below which a reduction is aimed at
+  double tolerated_rise = 1.5;     ///< of the merit in one step: it is lower only once the path is near
   double smallest_width = 1e-9;    ///< final smoothing width, in the constraint's scale
   int max_iterations = 50;         ///< linear solves before the augmented Lagrangian takes over
   int max_halvings = 6;

@@ -125,8 +125,7 @@ struct EliminatedSlack::Path {
     const Eigen::Map<const Local<R, W>> j(jacobian.col(element).data(), rows, width);
     const Eigen::Map<const Local<R, R>> d_inverse(inverse.col(element).data(), rows, rows);
     const Local<R, 1> change = j.lazyProduct(Eigen::Map<const Local<W, 1>>(dx, width));
-    Eigen::Map<Local<R, 1>>(out, rows) =
-        penalty * (d_inverse.lazyProduct(change) - change) - correction.col(element);
+    Eigen::Map<Local<R, 1>>(out, rows) = penalty * (d_inverse.lazyProduct(change) - change) - correction.col(element);
   }
   template <int R, int W>
   void gradient(Index element, double weight, const double* lambda, double* out) const {

@@ -42,7 +42,8 @@ class EliminatedSlack final : public Energy {
   /// Evaluates the smoothed conditions lambda = lambda_s(x, lambda) at x, with epsilon the square of the smoothing
   /// width in the constraint's units squared.
   Mismatch set_point(const Vector& x, double epsilon, int threads);
-  /// Aims the system linearised there at `target_epsilon` and adds to `gradient` what that leaves on its right-hand side.
+  /// Aims the system linearised there at `target_epsilon` and adds to `gradient` what that leaves on its right-hand
+  /// side.
   void aim(double target_epsilon, int threads, Vector& gradient);
   /// The change of lambda that belongs to the change dx of the linearised system.
   void multiplier_step(const Vector& dx, int threads, Vector& step) const;

@@ -26,8 +26,16 @@ double nodal_max_norm(const Vector& force, int node_size) {
   return std::sqrt(largest);
 }
 
-Newton::Newton(Assembly& assembly, Cholesky& cholesky, int node_size, NewtonOptions options)
-    : assembly_(assembly), cholesky_(cholesky), node_size_(node_size), options_(options) {
+void SubstitutedSystem::solve(const Vector& gradient, Vector& step) {
+  assembly_.to_ordered(gradient, right_hand_side_);
+  cholesky_.solve(right_hand_side_, solution_);
+  assembly_.from_ordered(solution_, step);
+  step = -step;
+}
+
+Newton::Newton(Assembly& assembly, NewtonSystem& system, const std::vector<int>& fixed, int node_size,
+               NewtonOptions options)
+    : assembly_(assembly), system_(system), fixed_(fixed), node_size_(node_size), options_(options) {
   options_.validate();
 }
 
@@ -35,6 +43,7 @@ void Newton::evaluate(NewtonState& state, Counts& counts, Timings& timings) {
   const Stopwatch watch(timings.assembly);
   ++counts.function_evaluations;
   state.value = assembly_.gradient(state.x, state.gradient);
+  for (int variable : fixed_) state.gradient[variable] = 0;
   state.nodal_norm = nodal_max_norm(state.gradient, node_size_);
 }
 
@@ -43,7 +52,7 @@ bool Newton::direction(const NewtonState& state, Counts& counts, Timings& timing
   const auto factorize = [&](double shift) {
     const Stopwatch watch(timings.factorization);
     ++counts.factorizations;
-    return cholesky_.factorize(assembly_.matrix(), shift);
+    return system_.factorize(shift);
   };
   const auto assemble = [&](Curvature curvature) {
     const Stopwatch watch(timings.assembly);
@@ -75,10 +84,7 @@ bool Newton::direction(const NewtonState& state, Counts& counts, Timings& timing
   if (!positive) return false;
   const Stopwatch watch(timings.solve);
   ++counts.linear_solves;
-  assembly_.to_ordered(state.gradient, right_hand_side_);
-  cholesky_.solve(right_hand_side_, solution_);
-  assembly_.from_ordered(solution_, step_);
-  step_ = -step_;
+  system_.solve(state.gradient, step_);
   return step_.allFinite();
 }
 

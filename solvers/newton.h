@@ -24,13 +24,37 @@ struct NewtonState {
   double nodal_norm = 0;  ///< largest Euclidean norm of the gradient over nodes, N
 };
 
+/// Solves for Newton steps that keep the fixed variables, with the matrix that an assembly holds.
+class NewtonSystem {
+ public:
+  virtual ~NewtonSystem() = default;
+  /// Factorises the matrix plus `shift` times the identity; false where that is not positive definite.
+  virtual bool factorize(double shift) = 0;
+  /// step = -H^{-1} gradient among the steps that keep the fixed variables, which get zero.
+  virtual void solve(const Vector& gradient, Vector& step) = 0;
+};
+
+/// Fixed variables substituted by the assembly itself, CHOLMOD in the order of its matrix.
+class SubstitutedSystem final : public NewtonSystem {
+ public:
+  /// The assembly has been put in the order that `cholesky` has analysed; both are borrowed.
+  SubstitutedSystem(const Assembly& assembly, Cholesky& cholesky) : assembly_(assembly), cholesky_(cholesky) {}
+  bool factorize(double shift) override { return cholesky_.factorize(assembly_.matrix(), shift); }
+  void solve(const Vector& gradient, Vector& step) override;
+
+ private:
+  const Assembly& assembly_;
+  Cholesky& cholesky_;
+  Vector right_hand_side_, solution_;
+};
+
 /// Semismooth Newton with an Armijo line search on a sum of energies. The exact Hessian is tried first; where it is not
 /// positive definite or its step fails, the positive semidefinite one serves for some iterations. A shift is added
 /// where even that is singular (slack static membranes).
 class Newton {
  public:
-  /// The assembly has been put in the order that `cholesky` has analysed; both are borrowed.
-  Newton(Assembly& assembly, Cholesky& cholesky, int node_size, NewtonOptions options);
+  /// `fixed` are the variables that stay; all is borrowed.
+  Newton(Assembly& assembly, NewtonSystem& system, const std::vector<int>& fixed, int node_size, NewtonOptions options);
 
   /// Minimises from state.x (fixed variables stay) until done(state); returns solved, iteration_limit, stalled,
   /// not_finite, time_limit or interrupted. The state that `done` last saw is in `state`.
@@ -43,10 +67,11 @@ class Newton {
   bool line_search(NewtonState& state, Counts& counts, Timings& timings);
 
   Assembly& assembly_;
-  Cholesky& cholesky_;
+  NewtonSystem& system_;
+  const std::vector<int>& fixed_;
   int node_size_;
   NewtonOptions options_;
-  Vector step_, right_hand_side_, solution_;
+  Vector step_;
   NewtonState trial_;
   Curvature curvature_ = Curvature::positive_semidefinite;
   int wait_ = 0;  // iterations before the exact Hessian is tried again

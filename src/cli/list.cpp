@@ -40,6 +40,9 @@ Lines solvers() {
       {"augmented_lagrangian",
        "slacks eliminated by projection, semismooth Newton inside, sparse Cholesky; multipliers carried from step to "
        "step"},
+      {"null_space",
+       "the same multiplier loop with pins kept in the null space of their equations and another factorisation: a "
+       "check"},
       {"ipopt",
        "Ipopt's interior-point method on a smooth scalar form of the constraints, with exact second derivatives"},
       {"nlopt", "algorithms of NLopt (key: solver.nlopt.algorithm) on the same form; small problems only"}};

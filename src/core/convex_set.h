@@ -20,8 +20,8 @@ class ConvexSet {
   /// The point that eliminating a slack with a logarithmic barrier gives: against one bound b it minimises |z - p|^2/2
   /// - epsilon log(b - p), which is p = z - (y + sqrt(y^2 + 4 epsilon))/2 with y = z - b; with two bounds both
   /// corrections are added. It lies inside K for every z and tends to project() as `epsilon` > 0 (the square of the
-  /// smoothing width) tends to 0. `inverse` receives the inverse of its derivative in z (symmetric, eigenvalues between 1
-  /// and 1e8, where they are cut), `rate` the derivative of p in epsilon; both are required. [Chen and Harker 1993;
+  /// smoothing width) tends to 0. `inverse` receives the inverse of its derivative in z (symmetric, eigenvalues between
+  /// 1 and 1e8, where they are cut), `rate` the derivative of p in epsilon; both are required. [Chen and Harker 1993;
   /// Kanzow 1996; Smale 1987]
   virtual void project_smoothed(Index element, const double* z, double epsilon, double* nearest, double* inverse,
                                 double* rate) const = 0;

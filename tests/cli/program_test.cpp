@@ -181,7 +181,7 @@ TEST_F(ProgramTest, HelpTeachesEveryOption) {
 TEST_F(ProgramTest, ListsExplainEachEntryInALine) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> lists{
       {"problems", {"hanging_cloth", "infeasible_pins", "twisted_sheet"}},
-      {"solvers", {"augmented_lagrangian", "ipopt", "nlopt"}},
+      {"solvers", {"augmented_lagrangian", "null_space", "ipopt", "nlopt"}},
       {"energies", {"membrane", "bending", "wind"}},
       {"constraints", {"pin", "strain_limit", "half_space", "sphere"}}};
   for (const auto& [what, names] : lists) {

@@ -139,12 +139,14 @@ Status ShellCase::minimise(Vector& x, double tolerance, const std::vector<const 
   assembly.set_order(fill_reducing_order(assembly.graph()));
   assembly.hessian(x, Curvature::positive_semidefinite);
   Cholesky cholesky(assembly.matrix(), 1);
+  SubstitutedSystem system(assembly, cholesky);
+  const std::vector<int> held = fixed_variables();
   NewtonState state;
   state.x = x;
   Counts counts;
   Timings timings;
   const Status status =
-      Newton(assembly, cholesky, 3, {})
+      Newton(assembly, system, held, 3, {})
           .minimise(
               state, [&](const NewtonState& s) { return s.nodal_norm <= tolerance; }, {}, counts, timings);
   x = state.x;

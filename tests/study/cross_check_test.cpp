@@ -1,0 +1,44 @@
+#include "tests/study/cross_check.h"
+
+#include <gtest/gtest.h>
+
+namespace taut {
+namespace {
+
+TEST(CrossCheck, ThreeMethodsAgreeOnAFallingCloth) {
+  const CrossCheck check("hanging_cloth", {{"bodies.cloth.mesh.grid.cells", "[6, 6]"}}, 50);
+  ASSERT_EQ(check.steps(), 50);
+  for (std::size_t k = 0; k < check.runs().size(); ++k) {
+    const EntrySummary summary = summarize(check.runs()[k]);
+    EXPECT_EQ(summary.solved, 50) << check.runs()[k].label;
+    EXPECT_EQ(summary.distances, 50);
+    EXPECT_LE(summary.objective_distance, 1e-8) << check.runs()[k].label;
+    EXPECT_LE(summary.position_distance, 1e-6) << check.runs()[k].label;
+    for (std::size_t step = 0; step < 50; ++step) {
+      EXPECT_LE(check.multiplier_difference(k, step), 1e-5) << check.runs()[k].label << ", step " << step + 1;
+    }
+  }
+}
+
+/// How many of the 20 steps of coincident_stretches one penalty that never grows solves, with either form of the limit.
+int solved_with_a_fixed_penalty(const std::string& form) {
+  const std::string file = std::string(TAUT_CATALOGUE) + "/coincident_stretches.json";
+  const std::vector<State> states = states_of(read_scene(file), 20);
+  EXPECT_EQ(states.size(), 20u);  // the default solver solves every step
+  const Scene scene = read_scene(
+      file, {{"solver.central_path", "false"}, {"solver.fixed_penalty", "2000"}, {"constraints.limit.form", form}});
+  const auto solver = build_solver(scene, 1);
+  EntryRun run;
+  run.trials = compare_steps(scene, states, *solver);
+  const EntrySummary summary = summarize(run);
+  EXPECT_EQ(summary.false_successes, 0);
+  return summary.solved;
+}
+
+TEST(LimitForms, TheMatrixFormSolvesEveryStepWhereTheSingularValueFormFails) {
+  EXPECT_EQ(solved_with_a_fixed_penalty("matrix"), 20);
+  EXPECT_LE(solved_with_a_fixed_penalty("singular_values"), 17);
+}
+
+}  // namespace
+}  // namespace taut
