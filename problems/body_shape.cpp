@@ -66,16 +66,65 @@ std::vector<std::array<Vector2, 3>> scaled_uv(const Body& body, const TriangleMe
   return uv;
 }
 
+/// The points of the top surface, placed as the bottom is.
+std::vector<Vector3> placed_top(const Body& body, const TriangleMesh& bottom) {
+  TriangleMesh top = read_mesh(body.shell->top);
+  for (Vector3& vertex : top.vertices) vertex = body.transform(vertex);
+  validate(top, body.shell->top.string());
+  if (top.vertices.size() != bottom.vertices.size() || top.triangles != bottom.triangles)
+    throw MeshError(body.shell->top.string() + ": found another mesh than the bottom's, allowed: the same triangles");
+  return std::move(top.vertices);
+}
+
+/// One entry a prism through the thickness, from the bottom: its part of the thickness.
+std::vector<double> fractions(const ThickShell& shell) {
+  double thickness = 0;
+  std::vector<double> parts;
+  for (const Layer& layer : shell.layers) {
+    thickness += layer.thickness;
+    parts.insert(parts.end(), static_cast<std::size_t>(layer.prisms), layer.thickness / layer.prisms);
+  }
+  for (double& part : parts) part /= thickness;
+  return parts;
+}
+
+/// Nodes and surfaces of a thick shell; its mesh moves to the middle.
+void add_layers(const Body& body, BodyShape& shape) {
+  const ThickShell& shell = *body.shell;
+  TriangleMesh& mesh = shape.mesh;
+  if (shell.top.empty()) {
+    double thickness = 0;
+    for (const Layer& layer : shell.layers) thickness += layer.thickness;
+    shape.layered = make_layered(mesh, std::vector{thickness}, fractions(shell), body.name);
+  } else {
+    const std::vector<Vector3> top = placed_top(body, mesh);
+    shape.layered = make_layered(mesh, mesh.vertices, top, fractions(shell), body.name);
+    for (std::size_t v = 0; v < top.size(); ++v) mesh.vertices[v] = 0.5 * (mesh.vertices[v] + top[v]);
+  }
+}
+
+void find_rest_surfaces(BodyShape& shape) {
+  shape.rest_positions = shape.mesh.vertices;
+  const int top = shape.layered->layers;
+  std::vector<Triangle> triangles;
+  for (const Triangle& t : shape.mesh.triangles)
+    triangles.push_back({t[0] * (top + 1), t[2] * (top + 1), t[1] * (top + 1)});
+  for (const Triangle& t : shape.mesh.triangles)
+    triangles.push_back({t[0] * (top + 1) + top, t[1] * (top + 1) + top, t[2] * (top + 1) + top});
+  shape.rest = rest_triangles(triangles, shape.layered->nodes, shape.first_node);
+}
+
 void find_rest_shape(const Body& body, BodyShape& shape) {
+  if (shape.layered) return find_rest_surfaces(shape);
   if (body.rest.from == RestShape::uv) {
     shape.rest_uv = scaled_uv(body, shape.mesh);
-    shape.rest = rest_triangles(shape.mesh.triangles, shape.rest_uv, shape.first_vertex);
+    shape.rest = rest_triangles(shape.mesh.triangles, shape.rest_uv, shape.first_node);
     return;
   }
   shape.rest_positions =
       body.rest.from == RestShape::mesh ? positions_of_rest_mesh(body, shape.mesh) : shape.mesh.vertices;
   for (Vector3& position : shape.rest_positions) position *= body.rest.scale;
-  shape.rest = rest_triangles(shape.mesh.triangles, shape.rest_positions, shape.first_vertex);
+  shape.rest = rest_triangles(shape.mesh.triangles, shape.rest_positions, shape.first_node);
 }
 
 template <class Names, class Select>
@@ -99,22 +148,55 @@ double BodyShape::rest_edge_length(int triangle, int k) const {
   return (rest_positions[corners[next]] - rest_positions[corners[k]]).norm();
 }
 
+int BodyShape::level(Surface surface) const {
+  switch (surface) {
+    case Surface::bottom:
+      return 0;
+    case Surface::mid:
+      return (levels() - 1) / 2;
+    case Surface::top:
+    case Surface::both:
+      break;
+  }
+  return levels() - 1;
+}
+
+std::vector<int> BodyShape::nodes_at(int vertex, Surface surface) const {
+  if (surface != Surface::both) return {node(vertex, level(surface))};
+  std::vector<int> all;
+  for (int at = 0; at < levels(); ++at) all.push_back(node(vertex, at));
+  return all;
+}
+
+std::vector<int> BodyShape::mean_nodes(int vertex, Surface surface) const {
+  const int low = (levels() - 1) / 2;
+  if (surface == Surface::mid && layered->layers % 2 == 1) return {node(vertex, low), node(vertex, low + 1)};
+  return loaded_nodes(vertex, surface);
+}
+
+std::vector<int> BodyShape::loaded_nodes(int vertex, Surface surface) const {
+  if (surface != Surface::both || !layered) return {node(vertex, level(surface))};
+  return {node(vertex, 0), node(vertex, levels() - 1)};
+}
+
 BodyShape make_body_shape(const Scene& scene, std::size_t index, const BodyShape* before) {
   const Body& body = scene.bodies[index];
   const std::string pointer = "/bodies/" + body.name;
   BodyShape shape;
   shape.name = body.name;
   if (before) {
-    shape.first_vertex = before->first_vertex + static_cast<int>(before->mesh.vertices.size());
-    shape.first_triangle = before->first_triangle + static_cast<int>(before->mesh.triangles.size());
+    shape.first_node = before->first_node + before->nodes();
+    shape.first_triangle = before->first_triangle + static_cast<int>(before->rest.size());
   }
   try {
     shape.mesh = placed_mesh(body);
+    if (body.shell) add_layers(body, shape);
   } catch (const std::exception& error) {
     throw InputError(scene.source, pointer + "/mesh", error.what());
   }
   constexpr std::size_t most = std::numeric_limits<int>::max() / 3;  // three variables each, counted by an int
-  if (shape.mesh.vertices.size() > most - static_cast<std::size_t>(shape.first_vertex)) {
+  const std::size_t nodes = shape.mesh.vertices.size() * static_cast<std::size_t>(shape.levels());
+  if (nodes > most - static_cast<std::size_t>(shape.first_node)) {
     throw InputError(scene.source, pointer + "/mesh", "more than " + std::to_string(most) + " vertices in all");
   }
   try {

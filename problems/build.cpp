@@ -15,13 +15,13 @@ namespace taut {
 namespace {
 
 void add_mesh(const scene::Body& body, const BodyShape& shape, Model& model) {
-  const auto& mesh = shape.mesh;
-  model.bodies.push_back({body.name, shape.first_vertex, static_cast<int>(mesh.vertices.size()), shape.first_triangle,
-                          static_cast<int>(mesh.triangles.size())});
+  const std::vector<Vector3>& points = shape.layered ? shape.layered->nodes : shape.mesh.vertices;
+  model.bodies.push_back({body.name, shape.first_node, shape.nodes(), shape.first_triangle,
+                          static_cast<int>(shape.rest.size()), shape.levels()});
   for (const RestTriangle& rest : shape.rest) model.triangles.push_back(rest.vertices);
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    const Index first = 3 * (shape.first_vertex + static_cast<Index>(v));
-    model.positions.segment<3>(first) = mesh.vertices[v];
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    const Index first = 3 * (shape.first_node + static_cast<Index>(v));
+    model.positions.segment<3>(first) = points[v];
     model.velocities.segment<3>(first) = body.initial_velocity;
   }
 }
@@ -33,7 +33,12 @@ void add_elastic(std::unique_ptr<Energy> energy, double beta, Model& model) {
   model.elastic.push_back(std::move(energy));
 }
 
-void add_material(const scene::Body& body, const BodyShape& shape, Model& model) {
+void add_material(const Scene& scene, const scene::Body& body, const BodyShape& shape, Model& model) {
+  if (body.shell) {
+    for (auto& energy : add_shell(scene, body, shape, model))
+      add_elastic(std::move(energy), body.damping.stiffness, model);
+    return;
+  }
   const double surface_density = body.density * body.thickness;
   model.inertia.push_back(std::make_unique<Inertia>(
       body.mass == scene::Mass::lumped
@@ -50,8 +55,8 @@ void add_material(const scene::Body& body, const BodyShape& shape, Model& model)
     const double stiffness = body.bending->stiffness;
     const auto& triangles = shape.mesh.triangles;
     std::vector<Hinge> hinges = shape.rest_uv.empty()
-                                    ? make_hinges(triangles, shape.rest_positions, stiffness, false, shape.first_vertex)
-                                    : make_hinges(triangles, shape.rest_uv, stiffness, shape.first_vertex);
+                                    ? make_hinges(triangles, shape.rest_positions, stiffness, false, shape.first_node)
+                                    : make_hinges(triangles, shape.rest_uv, stiffness, shape.first_node);
     add_elastic(std::make_unique<HingeBending>("bending of " + body.name, std::move(hinges)), body.damping.stiffness,
                 model);
   }
@@ -102,6 +107,20 @@ std::unique_ptr<Solver> build_nlopt(const Scene& scene) {
   return std::make_unique<Nlopt>(options);
 }
 
+/// Bottom and top for the mean over `both`; all nodes for a force on it. None for energies.
+std::vector<int> probed_nodes(const Scene& scene, const std::vector<BodyShape>& shapes, const scene::Probe& probe) {
+  std::vector<int> nodes;
+  if (probe.quantity == scene::Quantity::energy) return nodes;
+  const BodyShape& shape = shapes[static_cast<std::size_t>(probe.body)];
+  const std::string pointer = "/output/probes/" + probe.name + "/select";
+  for (const int vertex : selected_vertices(scene, shape, probe.select, pointer)) {
+    const std::vector<int> at = probe.quantity == scene::Quantity::force ? shape.nodes_at(vertex, probe.surface)
+                                                                         : shape.mean_nodes(vertex, probe.surface);
+    nodes.insert(nodes.end(), at.begin(), at.end());
+  }
+  return nodes;
+}
+
 /// Only the meshes tell how large the problem is.
 void refuse_more_than_nlopt_takes(const Scene& scene, const Model& model) {
   if (scene.solver.method != scene::SolverMethod::nlopt) return;
@@ -124,15 +143,15 @@ std::unique_ptr<Model> build_model(const Scene& scene) {
 
   auto model = std::make_unique<Model>();
   model->name = scene.name;
-  const Index vertices =
-      shapes.empty() ? 0 : shapes.back().first_vertex + static_cast<Index>(shapes.back().mesh.vertices.size());
+  const Index vertices = shapes.empty() ? 0 : shapes.back().first_node + shapes.back().nodes();
   model->positions.resize(3 * vertices);
   model->velocities.resize(3 * vertices);
   for (std::size_t k = 0; k < shapes.size(); ++k) add_mesh(scene.bodies[k], shapes[k], *model);
-  for (std::size_t k = 0; k < shapes.size(); ++k) add_material(scene.bodies[k], shapes[k], *model);
+  for (std::size_t k = 0; k < shapes.size(); ++k) add_material(scene, scene.bodies[k], shapes[k], *model);
   add_constraints(scene, shapes, *model);
   refuse_more_than_nlopt_takes(scene, *model);
   add_loads(scene, shapes, *model);
+  for (const scene::Probe& probe : scene.output.probes) model->probed.push_back(probed_nodes(scene, shapes, probe));
   return model;
 }
 

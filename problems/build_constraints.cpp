@@ -29,15 +29,10 @@ class PinCollector {
   void add(const scene::Constraint& constraint, const scene::Pin& pin, const BodyShape& shape) {
     const bool held[3] = {pin.x, pin.y, pin.z};
     for (const int vertex : selected_vertices(scene_, shape, constraint.select, pointer_to(constraint) + "/select")) {
-      for (int axis = 0; axis < 3; ++axis) {
-        if (!held[axis]) continue;
-        const auto [at, is_new] =
-            holders_.try_emplace(3 * (shape.first_vertex + vertex) + axis, Holder{&constraint, &pin.motion});
-        if (is_new || same_motion(*at->second.motion, pin.motion)) continue;
-        throw InputError(scene_.source, pointer_to(constraint),
-                         std::string("found another motion than that of ") + at->second.constraint->name + " for the " +
-                             "xyz"[axis] + " of vertex " + std::to_string(vertex) + " of " + shape.name +
-                             ", allowed: one motion for each coordinate");
+      for (const int node : shape.nodes_at(vertex, constraint.surface)) {
+        for (int axis = 0; axis < 3; ++axis) {
+          if (held[axis]) hold(3 * node + axis, {&constraint, &pin.motion}, vertex, shape);
+        }
       }
     }
   }
@@ -59,6 +54,15 @@ class PinCollector {
     const scene::Constraint* constraint;
     const scene::Motion* motion;
   };
+  void hold(int variable, const Holder& holder, int vertex, const BodyShape& shape) {
+    const auto [at, is_new] = holders_.try_emplace(variable, holder);
+    if (is_new || same_motion(*at->second.motion, *holder.motion)) return;
+    throw InputError(scene_.source, pointer_to(*holder.constraint),
+                     std::string("found another motion than that of ") + at->second.constraint->name + " for the " +
+                         "xyz"[variable % 3] + " of vertex " + std::to_string(vertex) + " of " + shape.name +
+                         ", allowed: one motion for each coordinate");
+  }
+
   const Scene& scene_;
   const Vector& positions_;
   std::map<int, Holder> holders_;
@@ -72,8 +76,11 @@ StrainLimitTriangles limited_triangles(const Scene& scene, const scene::Constrai
   StrainLimitTriangles limit;
   limit.constraint = constraint.name;
   limit.body = shape.name;
-  for (std::size_t t = 0; t < shape.mesh.triangles.size(); ++t) {
-    const Triangle& triangle = shape.mesh.triangles[t];
+  const std::size_t triangles = shape.mesh.triangles.size();
+  const std::size_t begin = shape.layered && constraint.surface == scene::Surface::top ? triangles : 0;
+  const std::size_t end = constraint.surface == scene::Surface::bottom ? triangles : shape.rest.size();
+  for (std::size_t t = begin; t < end; ++t) {
+    const Triangle& triangle = shape.mesh.triangles[t % triangles];
     if (!std::all_of(triangle.begin(), triangle.end(),
                      [&](int v) { return std::binary_search(selected.begin(), selected.end(), v); }))
       continue;
@@ -117,11 +124,12 @@ void add_constraints(const Scene& scene, const std::vector<BodyShape>& shapes, M
   PinCollector pins(scene, model.positions);
   for (const scene::Constraint& constraint : scene.constraints) {
     const BodyShape& shape = shapes[constraint.body];
-    const auto scene_vertices = [&] {
-      std::vector<int> vertices =
-          selected_vertices(scene, shape, constraint.select, pointer_to(constraint) + "/select");
-      for (int& vertex : vertices) vertex += shape.first_vertex;
-      return vertices;
+    const auto scene_nodes = [&] {
+      std::vector<int> nodes;
+      for (const int vertex : selected_vertices(scene, shape, constraint.select, pointer_to(constraint) + "/select")) {
+        for (const int node : shape.nodes_at(vertex, scene::Surface::both)) nodes.push_back(node);
+      }
+      return nodes;
     };
     if (const auto* pin = std::get_if<scene::Pin>(&constraint.kind)) {
       pins.add(constraint, *pin, shape);
@@ -129,15 +137,15 @@ void add_constraints(const Scene& scene, const std::vector<BodyShape>& shapes, M
       model.constraints.push_back(strain_limit(limited_triangles(scene, constraint, shape), *limit));
     } else if (const auto* half = std::get_if<scene::HalfSpace>(&constraint.kind)) {
       auto obstacle =
-          std::make_unique<HalfSpace>(constraint.name, shape.name, scene_vertices(), shape.first_vertex, scene_size);
+          std::make_unique<HalfSpace>(constraint.name, shape.name, scene_nodes(), shape.first_node, scene_size);
       const auto place = [at = obstacle.get(), half = *half](double time) {
         at->place(half.motion.position(half.point, time), half.motion.direction(half.normal, time));
       };
       add_obstacle(std::move(obstacle), half->motion, place, model);
     } else {
       const auto& sphere = std::get<scene::Sphere>(constraint.kind);
-      auto obstacle = std::make_unique<SphereObstacle>(constraint.name, shape.name, scene_vertices(),
-                                                       shape.first_vertex, scene_size, sphere.radius);
+      auto obstacle = std::make_unique<SphereObstacle>(constraint.name, shape.name, scene_nodes(), shape.first_node,
+                                                       scene_size, sphere.radius);
       const auto place = [at = obstacle.get(), sphere](double time) {
         at->place(sphere.motion.position(sphere.center, time));
       };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "dynamics/model.h"
@@ -7,6 +8,11 @@
 #include "problems/scene.h"
 
 namespace taut {
+
+/// Adds the masses of a thick shell and its surfaces to a model, and returns its elastic energies, one a layer. Throws
+/// InputError.
+std::vector<std::unique_ptr<Energy>> add_shell(const Scene& scene, const scene::Body& body, const BodyShape& shape,
+                                               Model& model);
 
 /// Adds the scene's pins, strain limits and obstacles to a model whose positions are there. Throws InputError.
 void add_constraints(const Scene& scene, const std::vector<BodyShape>& shapes, Model& model);

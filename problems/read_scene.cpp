@@ -34,8 +34,9 @@ std::string fnv1a(std::string_view bytes) {
 template <class Change>
 void replace_mesh_files(Sorted& document, const Change& change) {
   for (Sorted& body : document["bodies"])
-    for (const char* part : {"mesh", "rest"})
-      if (body[part].contains("file")) body[part]["file"] = change(body[part]["file"].get<std::string>());
+    for (const char* part : {"mesh", "rest", "top"})
+      if (body.contains(part) && body[part].contains("file"))
+        body[part]["file"] = change(body[part]["file"].get<std::string>());
 }
 
 std::string hash_of(Sorted document) {

@@ -11,6 +11,7 @@
 #include "core/residuals.h"
 #include "core/types.h"
 #include "energies/membrane.h"
+#include "energies/prism_shell.h"
 #include "geometry/grid.h"
 #include "solvers/nlopt.h"
 
@@ -34,6 +35,7 @@ struct Time {
   double step = 0;  ///< s; 1 / steps for quasi_static, so that time k * step always holds
   int steps = 1;
   double spectral_radius = 0.8;
+  int halvings = 0;  ///< of a static load step that is not solved
 };
 
 struct Grid {
@@ -67,6 +69,23 @@ struct Membrane {
 struct Bending {
   double stiffness = 0;  ///< N m
 };
+struct Layer {
+  double thickness = 0;  ///< m; of all its prisms
+  double density = 0;    ///< kg/m3
+  SolidMaterial material;
+  double fibre_angle = 0;  ///< rad, from ThickShell::direction
+  bool has_fibres = false;
+  int prisms = 1;
+};
+/// A body of prisms between two surfaces.
+struct ThickShell {
+  std::filesystem::path top;  ///< the top surface, the mesh is the bottom then; empty: the mesh is in the middle
+  std::vector<Layer> layers;  ///< from the bottom, at least one; without a thickness where `top` gives that of one
+  PrismShellOptions options;
+  Vector3 direction = Vector3::UnitX();  ///< where fibre angles count from
+};
+/// Nodes of a thick shell at a mesh vertex; of cloth the only one, whatever is asked for.
+enum class Surface { both, bottom, top, mid };
 struct Damping {
   double mass = 0;       ///< 1/s
   double stiffness = 0;  ///< s
@@ -81,6 +100,7 @@ struct Body {
   Mass mass = Mass::lumped;
   std::optional<Membrane> membrane;
   std::optional<Bending> bending;
+  std::optional<ThickShell> shell;             ///< without it the body is cloth
   Damping damping;                             ///< zero: none
   Vector3 initial_velocity = Vector3::Zero();  ///< m/s
 };
@@ -156,6 +176,7 @@ struct Constraint {
   std::string name;
   int body = 0;  ///< index into Scene::bodies
   Selection select;
+  Surface surface = Surface::both;
   std::variant<Pin, StrainLimit, HalfSpace, Sphere> kind;
 };
 
@@ -170,6 +191,14 @@ struct EdgeLoad {
 struct Pressure {
   double pressure;  ///< Pa
 };
+struct SurfaceLoad {
+  Vector3 force_per_area;           ///< N/m2
+  std::vector<Vector3> half_waves;  ///< 1/m
+};
+struct EndMoment {
+  Selection select;
+  Vector3 moment_per_length;  ///< N
+};
 struct Wind {
   Vector3 velocity;    ///< m/s
   double air_density;  ///< kg/m3
@@ -178,7 +207,8 @@ struct Wind {
 struct Load {
   std::string name;
   int body = 0;  ///< index into Scene::bodies
-  std::variant<PointLoad, EdgeLoad, Pressure, Wind> kind;
+  Surface surface = Surface::both;
+  std::variant<PointLoad, EdgeLoad, Pressure, SurfaceLoad, EndMoment, Wind> kind;
 };
 
 enum class OnFailure { stop, proceed };
@@ -209,11 +239,28 @@ struct Solver {
 };
 
 enum class FrameFormat { vtu, obj, none };
+enum class Quantity { position, displacement, displacement_length, force, energy };
+struct Expected {
+  double value = 0, tolerance = 0;
+  bool relative = false;  ///< tolerance times the value
+  std::string source;
+};
+struct Probe {
+  std::string name;
+  Quantity quantity = Quantity::position;
+  int axis = 0;
+  int body = 0;      ///< index into Scene::bodies
+  Selection select;  ///< Everything for energies
+  Surface surface = Surface::both;
+  double factor = 1;
+  std::optional<Expected> expected;
+};
 struct Output {
   FrameFormat format = FrameFormat::vtu;
   int every = 1;
   int pictures = 3;
   std::optional<Vector3> view;
+  std::vector<Probe> probes;
 };
 
 }  // namespace scene

@@ -2,39 +2,20 @@
 
 #include <fmt/format.h>
 
-#include <initializer_list>
 #include <nlohmann/json.hpp>
-#include <numbers>
-#include <optional>
-#include <utility>
+
+#include "problems/shell_from_json.h"
 
 namespace taut {
 
 namespace {
 
-using Json = nlohmann::json;
 using namespace scene;
 
-/// The schema has admitted the text, so that one of the options matches.
-template <class Enum>
-Enum choose(const Json& text, std::initializer_list<std::pair<std::string_view, Enum>> options) {
-  for (const auto& [name, value] : options)
-    if (text.get_ref<const std::string&>() == name) return value;
-  throw std::logic_error("problem.schema.json allows \"" + text.get<std::string>() + "\", read_scene does not");
-}
-
-Vector3 vector(const Json& json) { return {json[0].get<double>(), json[1].get<double>(), json[2].get<double>()}; }
-double radians(const Json& degrees) { return degrees.get<double>() * std::numbers::pi / 180; }
-
-std::optional<double> optional_number(const Json& json, const char* key) {
-  return json.contains(key) ? std::optional<double>(json[key].get<double>()) : std::nullopt;
-}
-
 /// Turns a completed document into a Scene and checks what a schema cannot say.
-class SceneReader {
+class SceneReader : public ShellReader {
  public:
-  SceneReader(std::filesystem::path folder, std::string source)
-      : folder_(std::move(folder)), source_(std::move(source)) {}
+  using ShellReader::ShellReader;
 
   Scene read(const Json& json, const std::string& default_name) {
     Scene result;
@@ -54,29 +35,7 @@ class SceneReader {
   }
 
  private:
-  std::filesystem::path folder_;
-  std::string source_;
   const std::vector<Body>* bodies_ = nullptr;
-
-  [[noreturn]] void refuse(const std::string& pointer, const std::string& found, const std::string& allowed) const {
-    throw InputError(source_, pointer, "found " + found + ", allowed: " + allowed);
-  }
-
-  Vector3 direction(const Json& json, const std::string& pointer) const {
-    const Vector3 d = vector(json);
-    const double largest = d.cwiseAbs().maxCoeff();
-    if (largest == 0) refuse(pointer, "[0, 0, 0]", "a vector that is not zero");
-    return (d / largest).normalized();  // the squares of 1e-200 would vanish, those of 1e200 overflow
-  }
-
-  std::filesystem::path mesh_path(const Json& json, const std::string& pointer) const {
-    const std::filesystem::path path = folder_ / json.get<std::string>();
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(path, ignored))
-      refuse(pointer, json.dump(-1, ' ', false, Json::error_handler_t::replace),
-             "an existing file (looked for " + path.string() + ")");
-    return path;
-  }
 
   Time time(const Json& json) const {
     Time result;
@@ -86,12 +45,13 @@ class SceneReader {
                                                                 {"static", Integrator::quasi_static}});
     result.steps = json["steps"];
     result.spectral_radius = json["spectral_radius"];
+    result.halvings = json["halvings"];
     if (result.integrator == Integrator::quasi_static) {
       result.step = 1.0 / result.steps;
     } else if (json.contains("step")) {
       result.step = json["step"];
     } else {
-      throw InputError(source_, "/time/step", "missing, allowed: a number > 0, in s (only \"static\" goes without)");
+      missing("/time/step", "a number > 0, in s (only \"static\" goes without)");
     }
     return result;
   }
@@ -106,8 +66,13 @@ class SceneReader {
       result.mesh = MeshFile{mesh_path(json["mesh"]["file"], pointer + "/mesh/file")};
     result.transform = transform(json["transform"], pointer + "/transform");
     result.rest = rest(json["rest"], pointer + "/rest");
-    result.thickness = json["thickness"];
-    result.density = json["density"];
+    if (json["model"] == "thick_shell") {
+      result.shell = shell(json, pointer);
+    } else {
+      check_cloth(json, pointer);
+      result.thickness = json["thickness"];
+      result.density = json["density"];
+    }
     result.mass = choose<Mass>(json["mass"], {{"lumped", Mass::lumped}, {"consistent", Mass::consistent}});
     if (json.contains("membrane")) {
       const Json& membrane = json["membrane"];
@@ -173,6 +138,7 @@ class SceneReader {
     result.name = name;
     result.body = body_index(json, pointer);
     result.select = selection(json["select"], result.body, pointer + "/select");
+    result.surface = surface_of(json, result.body, pointer, Surface::both);
     const std::string type = json["type"];
     if (type == "pin") {
       const std::string axes = json["axes"];
@@ -189,7 +155,12 @@ class SceneReader {
     return result;
   }
 
+  Surface surface_of(const Json& json, int body, const std::string& pointer, Surface otherwise) const {
+    return surface(json, (*bodies_)[static_cast<std::size_t>(body)], pointer, otherwise);
+  }
+
   StrainLimit strain_limit(const Json& json, const std::string& pointer) const {
+    if (json.value("surface", "") == "mid") refuse(pointer + "/surface", "\"mid\"", "both, bottom, top");
     StrainLimit result;
     result.form = choose<LimitForm>(json["form"],
                                     {{"matrix", LimitForm::matrix}, {"singular_values", LimitForm::singular_values}});
@@ -258,6 +229,7 @@ class SceneReader {
     result.name = name;
     result.body = body_index(json, pointer);
     const std::string type = json["type"];
+    result.surface = surface_of(json, result.body, pointer, type == "pressure" ? Surface::top : Surface::both);
     if (type == "point_load") {
       result.kind = PointLoad{selection(json["select"], result.body, pointer + "/select"), vector(json["force"])};
     } else if (type == "edge_load") {
@@ -265,10 +237,65 @@ class SceneReader {
           EdgeLoad{selection(json["select"], result.body, pointer + "/select"), vector(json["force_per_length"])};
     } else if (type == "pressure") {
       result.kind = Pressure{json["pressure"]};
+    } else if (type == "surface_load") {
+      result.kind = surface_load(json);
+    } else if (type == "end_moment") {
+      result.kind = end_moment(json, result.body, pointer);
     } else {
       result.kind = Wind{vector(json["velocity"]), json["air_density"], json["drag"]};
     }
     return result;
+  }
+
+  static SurfaceLoad surface_load(const Json& json) {
+    SurfaceLoad result{vector(json["force_per_area"]), {}};
+    for (const Json& wave : json["half_waves"]) result.half_waves.push_back(vector(wave));
+    return result;
+  }
+
+  scene::EndMoment end_moment(const Json& json, int body, const std::string& pointer) const {
+    const Body& on = (*bodies_)[static_cast<std::size_t>(body)];
+    if (!on.shell) refuse(pointer + "/body", "\"" + on.name + "\", which is cloth", "a thick shell");
+    direction(json["moment_per_length"], pointer + "/moment_per_length");  // not zero
+    return {selection(json["select"], body, pointer + "/select"), vector(json["moment_per_length"])};
+  }
+
+  Probe probe(const std::string& name, const Json& json) const {
+    const std::string pointer = "/output/probes/" + name;
+    Probe result;
+    result.name = name;
+    const std::string quantity = json["quantity"];
+    if (json.contains("body"))
+      result.body = body_index(json, pointer);
+    else if (bodies_->size() > 1)
+      missing(pointer + "/body", "the name of a body, as there are several");
+    if (quantity == "energy") {
+      for (const char* key : {"select", "surface"})
+        if (json.contains(key)) refuse(pointer + "/" + key, json[key].dump(), "none of it for \"energy\"");
+      result.quantity = Quantity::energy;
+    } else {
+      if (!json.contains("select")) missing(pointer + "/select", "a selection");
+      result.select = selection(json["select"], result.body, pointer + "/select");
+      const Body& on = (*bodies_)[static_cast<std::size_t>(result.body)];
+      result.surface = surface(json, on, pointer, Surface::both, !quantity.starts_with("force_"));
+      result.quantity = quantity == "displacement"              ? Quantity::displacement_length
+                        : quantity.starts_with("displacement_") ? Quantity::displacement
+                        : quantity.starts_with("force_")        ? Quantity::force
+                                                                : Quantity::position;
+      if (result.quantity != Quantity::displacement_length) result.axis = quantity.back() - 'x';
+    }
+    result.factor = json["factor"];
+    if (json.contains("expected")) result.expected = expected(json["expected"], pointer + "/expected");
+    return result;
+  }
+
+  Expected expected(const Json& json, const std::string& pointer) const {
+    const auto relative = optional_number(json, "relative"), absolute = optional_number(json, "absolute");
+    if (relative.has_value() == absolute.has_value())
+      throw InputError(source_, pointer,
+                       std::string("found ") + (relative ? "both" : "neither") +
+                           " of \"relative\" and \"absolute\", allowed: exactly one of them");
+    return {json["value"], relative ? *relative : *absolute, relative.has_value(), json["source"]};
   }
 
   static scene::Solver solver(const Json& json) {
@@ -308,13 +335,14 @@ class SceneReader {
     result.every = json["every"];
     result.pictures = json["pictures"];
     if (json.contains("view")) result.view = direction(json["view"], "/output/view");
+    for (const auto& [name, value] : json["probes"].items()) result.probes.push_back(probe(name, value));
     return result;
   }
 };
 
 }  // namespace
 
-Scene scene_from_json(const Json& document, const std::filesystem::path& folder, const std::string& source,
+Scene scene_from_json(const nlohmann::json& document, const std::filesystem::path& folder, const std::string& source,
                       const std::string& default_name) {
   return SceneReader(folder, source).read(document, default_name);
 }

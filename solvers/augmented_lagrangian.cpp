@@ -169,10 +169,18 @@ void AugmentedLagrangian::Run::start(const WarmStart& warm) {
 
 /// Minimises over x until its residual is small against the force that the multiplier update would change.
 Status AugmentedLagrangian::Run::inner(NewtonState& state) {
-  const double smallest = 0.5 * options.tolerances.stationarity * judged.force_scale;
+  double smallest = 0.5 * options.tolerances.stationarity * judged.force_scale;
+  int seen = 0;
   return newton.minimise(
       state,
       [&](const NewtonState& now) {
+        // Without constraints nothing else looks at the forces again, which may be much larger than at the start: thin
+        // shells would be asked for a balance below their round-off.
+        if (work.slacks.empty() && ++seen % 8 == 0) {
+          result.x = now.x;
+          judged = residuals(problem, result);
+          smallest = 0.5 * options.tolerances.stationarity * judged.force_scale;
+        }
         if (now.nodal_norm <= smallest) return true;
         if (result.counts.linear_solves >= options.max_newton) return true;
         scratch.setZero(problem.size());

@@ -10,7 +10,7 @@ SCHEMA = json.loads((HERE.parent.parent / "problems" / "problem.schema.json").re
 DEFINITIONS = SCHEMA["definitions"]
 SIGNS = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiveMaximum": "<"}
 # Definitions that a table cell says in a word.
-WORDS = {"vector": "[x, y, z]", "body_name": "name of a body", "name": "string"}
+WORDS = {"shell_surface": "`\"both\"`, `\"bottom\"`, `\"top\"`, `\"mid\"`", "vector": "[x, y, z]", "body_name": "name of a body", "name": "string"}
 
 INTRODUCTION = """# Problem format
 

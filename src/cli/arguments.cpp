@@ -8,7 +8,7 @@ namespace fs = std::filesystem;
 fs::path find_problem(const std::string& problem) {
   std::error_code error;
   if (fs::is_regular_file(problem, error)) return problem;
-  const bool is_name = problem.find_first_of("/.") == problem.npos;
+  const bool is_name = problem.find('.') == problem.npos && !problem.starts_with('/');
   const fs::path listed = catalogue_folder() / (problem + ".json");
   if (is_name && fs::is_regular_file(listed, error)) return listed;
   throw UsageError(

@@ -49,16 +49,20 @@ Lines solvers() {
 }
 
 Lines energies() {
-  return {{"inertia", "mass of each body, lumped or consistent (key: mass); absent in static problems"},
-          {"gravity", "a constant acceleration of everything (key: gravity)"},
-          {"membrane stvk", "plane-stress St. Venant-Kirchhoff: linear in the Green strain (key: membrane.law)"},
-          {"membrane neo_hookean", "plane-stress neo-Hookean: resists collapse of a triangle (key: membrane.law)"},
-          {"bending", "discrete hinges at the inner edges, with rest angles (key: bending)"},
-          {"damping", "Rayleigh damping by mass and by stiffness (key: damping)"},
-          {"point_load", "a constant force at vertices (loads, type)"},
-          {"edge_load", "a constant force per length along boundary edges (loads, type)"},
-          {"pressure", "pressure times enclosed volume, for closed surfaces or fixed boundaries (loads, type)"},
-          {"wind", "air drag; it has no potential and is held constant within a step (loads, type)"}};
+  return {
+      {"inertia", "mass of each body, lumped or consistent (key: mass); absent in static problems"},
+      {"gravity", "a constant acceleration of everything (key: gravity)"},
+      {"membrane stvk", "plane-stress St. Venant-Kirchhoff: linear in the Green strain (key: membrane.law)"},
+      {"membrane neo_hookean", "plane-stress neo-Hookean: resists collapse of a triangle (key: membrane.law)"},
+      {"bending", "discrete hinges at the inner edges, with rest angles (key: bending)"},
+      {"thick_shell", "six-node prisms in layers, stvk, neo_hookean or with fibres (keys: model, material, layers)"},
+      {"damping", "Rayleigh damping by mass and by stiffness (key: damping)"},
+      {"point_load", "a constant force at vertices (loads, type)"},
+      {"edge_load", "a constant force per length along boundary edges (loads, type)"},
+      {"surface_load", "a constant force per area (loads, type)"},
+      {"end_moment", "a moment that turns an edge of a thick shell about a fixed axis (loads, type)"},
+      {"pressure", "pressure times enclosed volume, for closed surfaces or fixed boundaries (loads, type)"},
+      {"wind", "air drag; it has no potential and is held constant within a step (loads, type)"}};
 }
 
 /// The types of constraints with their descriptions in the schema, which is what problem files may say.

@@ -8,18 +8,22 @@
 #include "core/constraint.h"
 #include "core/energy.h"
 #include "energies/dead_load.h"
+#include "energies/end_moment.h"
 #include "energies/inertia.h"
 #include "energies/pressure.h"
 #include "energies/stiffness_damping.h"
+#include "geometry/rest_shape.h"
 #include "geometry/triangle_mesh.h"
 
 namespace taut {
 
-/// A body's share of the scene's vertices and triangles.
+/// A body's share of the scene's vertices and triangles. A thick shell has `levels` of vertices one over the other at
+/// each vertex of its mesh, and the triangles of its bottom, then those of its top.
 struct BodyRange {
   std::string name;
   int first_vertex = 0, vertices = 0;
   int first_triangle = 0, triangles = 0;
+  int levels = 1;
 };
 
 /// A held coordinate: x[variable] follows its value at every time.
@@ -36,9 +40,11 @@ struct Model {
   std::vector<Triangle> triangles;  ///< of all bodies, scene vertex indices
   Vector positions, velocities;     ///< at the start; m and m/s, 3 entries a vertex
 
-  std::vector<std::unique_ptr<Inertia>> inertia;  ///< one per body with mass
+  std::vector<RestTriangle> surfaces;  ///< outer surfaces of thick shells at rest; their vertices are in `triangles`
+
+  std::vector<std::unique_ptr<Inertia>> inertia;  ///< one per body with mass, or per layer of a thick shell
   std::vector<double> mass_damping;               ///< 1/s, one per inertia
-  std::vector<std::unique_ptr<Energy>> elastic;   ///< membrane, bending
+  std::vector<std::unique_ptr<Energy>> elastic;   ///< membrane, bending, layers of thick shells
   struct RayleighDamping {
     std::unique_ptr<StiffnessDamping> energy;
     double beta;  ///< s
@@ -46,6 +52,7 @@ struct Model {
   std::vector<RayleighDamping> stiffness_damping;
   std::vector<std::unique_ptr<DeadLoad>> dead_loads;  ///< gravity, point and edge loads
   std::vector<std::unique_ptr<Pressure>> pressures;
+  std::vector<std::unique_ptr<EndMoment>> end_moments;
   struct LaggedLoad {
     std::unique_ptr<DeadLoad> energy;
     /// Adds the nodal forces at these positions and velocities to the third argument.
@@ -53,7 +60,8 @@ struct Model {
   };
   std::vector<LaggedLoad> lagged_loads;  ///< wind
   std::vector<std::unique_ptr<Constraint>> constraints;
-  std::vector<PinnedVariable> pins;  ///< ascending variables
+  std::vector<PinnedVariable> pins;      ///< ascending variables
+  std::vector<std::vector<int>> probed;  ///< the vertices of each of Scene::output.probes
   /// Moves the obstacles to where they are at `time`; empty where none move.
   std::vector<std::function<void(double time)>> movers;
 };

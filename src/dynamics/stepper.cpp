@@ -43,6 +43,7 @@ std::vector<const Energy*> energies_of(const Model& model, bool dynamic) {
   }
   append(energies, model.dead_loads);
   append(energies, model.pressures);
+  append(energies, model.end_moments);
   for (const auto& load : model.lagged_loads) energies.push_back(load.energy.get());
   return energies;
 }
@@ -120,6 +121,7 @@ void Stepper::place(double time) {
   const double factor = dynamic() ? 1.0 : time;
   for (const auto& load : model_.dead_loads) load->set_factor(factor);
   for (const auto& pressure : model_.pressures) pressure->set_factor(factor);
+  for (const auto& moment : model_.end_moments) moment->set_factor(factor);
   for (const auto& load : model_.lagged_loads) load.energy->set_factor(factor);
 }
 
@@ -160,8 +162,8 @@ void Stepper::follow_scripts(EndOfStep& end) const {
   }
 }
 
-const Problem& Stepper::prepare() {
-  const double end_time = time_at(state_.step + 1);
+const Problem& Stepper::prepare(double part) {
+  const double end_time = dynamic() || part == 1 ? time_at(state_.step + 1) : (state_.step + part) / options_.steps;
   place(end_time);
   if (dynamic()) {
     const EndOfStep end = end_of_step();
@@ -184,6 +186,7 @@ const Problem& Stepper::prepare() {
     load.forces(state_.positions, state_.velocities, forces);
     load.energy->set_forces(forces);
   }
+  for (const auto& moment : model_.end_moments) moment->set_reference(state_.positions);
   problem_.initial_guess = state_.positions;
   if (dynamic()) problem_.initial_guess += options_.step * state_.velocities;
   for (std::size_t k = 0; k < model_.pins.size(); ++k) {
@@ -192,6 +195,13 @@ const Problem& Stepper::prepare() {
     problem_.initial_guess[model_.pins[k].variable] = value;
   }
   return problem_;
+}
+
+void Stepper::hold(const Result& result) {
+  check_size(result.x, state_.positions.size(), "result.x");
+  state_.positions = result.x;
+  state_.warm.multipliers = result.multipliers;
+  state_.warm.penalties = result.penalties;
 }
 
 void Stepper::accept(const Result& result) {

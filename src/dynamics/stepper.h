@@ -67,11 +67,17 @@ class Stepper {
   double time() const { return time_at(state_.step); }
 
   /// The problem of the next step; the same object every time, with the same topology.
-  const Problem& prepare();
+  /// In a static problem `part` of a load step, above 0 and at most 1, will do.
+  const Problem& prepare(double part = 1);
+  /// Takes the positions of a part of a static load step, from which the next part goes on; no step is finished.
+  void hold(const Result& result);
+  /// The problem as prepare() has left it.
+  const Problem& problem() const { return problem_; }
   /// Takes the positions, multipliers and penalties of the result as the end of the step that prepare() posed.
   void accept(const Result& result);
 
-  /// Energies at the present state, J, by name: "kinetic", then each elastic energy and each load with a potential.
+  /// Energies at the present state, J, by name: "kinetic", then each elastic energy and each load with a potential,
+  /// but for end moments, whose potential depends on how often they have turned.
   std::vector<std::pair<std::string, double>> energies() const;
 
  private:

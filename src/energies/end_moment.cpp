@@ -17,20 +17,19 @@ EndMoment::EndMoment(std::string name, std::vector<Load> loads, const Vector3& a
       throw std::invalid_argument("EndMoment: expected directors across the axis, got one along it at node " +
                                   std::to_string(load.bottom));
     }
-    reference_.push_back({across.normalized(), 0.0});
+    reference_.push_back(across.normalized());
   }
 }
 
 double EndMoment::turned(Index element, const Vector3& director) const {
-  const Vector3& r = reference_[element].direction;
-  return reference_[element].angle + std::atan2(axis_.cross(r).dot(director), r.dot(director));
+  const Vector3& r = reference_[element];
+  return std::atan2(axis_.cross(r).dot(director), r.dot(director));
 }
 
 void EndMoment::set_reference(const Vector& x) {
   for (std::size_t k = 0; k < loads_.size(); ++k) {
     const Vector3 director = x.segment<3>(3 * loads_[k].top) - x.segment<3>(3 * loads_[k].bottom);
-    const double angle = turned(static_cast<Index>(k), director);
-    reference_[k] = {(director - axis_.dot(director) * axis_).normalized(), angle};
+    reference_[k] = (director - axis_.dot(director) * axis_).normalized();
   }
 }
 
@@ -39,7 +38,7 @@ double EndMoment::evaluate(Index element, const double* x, double* gradient, dou
   const Eigen::Map<const Vector3> bottom(x), top(x + 3);
   const Vector3 director = top - bottom;
   const double moment = factor_ * loads_[element].moment;
-  const Vector3 p = reference_[element].direction, q = axis_.cross(p);
+  const Vector3 p = reference_[element], q = axis_.cross(p);
   const double u = p.dot(director), v = q.dot(director), square = u * u + v * v;
   if (gradient) {
     const Vector3 force = -moment / square * (u * q - v * p);

@@ -7,8 +7,8 @@
 namespace taut {
 
 /// A moment on the directors of a shell's edge about a fixed axis: W(x) = -sum_k m_k phi_k(x), with phi_k the angle by
-/// which director k, from the bottom to the top node, has turned about the axis. It has this potential because the axis
-/// is fixed; the forces on the two nodes are a couple that follows the director.
+/// which director k, from the bottom to the top node, has turned about the axis since set_reference(). It has this
+/// potential because the axis is fixed; the forces on the two nodes are a couple that follows the director.
 ///
 /// Angles count from a reference direction and jump half a turn away from it; set_reference() moves it along, so a step
 /// may turn an edge by less than half a turn.
@@ -25,7 +25,7 @@ class EndMoment final : public Energy {
 
   /// Multiplies the moments; static load steps go from 0 to 1.
   void set_factor(double factor) { factor_ = factor; }
-  /// Counts further turns from here. Energies and forces stay what they are.
+  /// Counts angles from here on, where the energy becomes zero; forces stay what they are.
   void set_reference(const Vector& x);
 
   std::string name() const override { return name_; }
@@ -34,17 +34,12 @@ class EndMoment final : public Energy {
                   Curvature curvature) const override;
 
  private:
-  /// Where angles count from: a unit vector across the axis, and the angle already turned there.
-  struct Reference {
-    Vector3 direction;
-    double angle;
-  };
   double turned(Index element, const Vector3& director) const;
 
   std::string name_;
   std::vector<Load> loads_;
   Vector3 axis_;
-  std::vector<Reference> reference_;
+  std::vector<Vector3> reference_;  // where angles count from: unit vectors across the axis
   double factor_ = 1;
   Stencils stencils_{6};
 };

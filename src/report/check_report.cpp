@@ -29,6 +29,27 @@ void print_last_step(Out out, const CheckReport& report) {
   fmt::format_to(out, "  {:<18} {:.2e}\n", "complementarity", r.complementarity);
 }
 
+void print_probes(Out out, const CheckReport& report) {
+  if (report.probes.empty()) return;
+  fmt::format_to(out, "probes, computed anew\n");
+  for (const ProbeValue& probe : report.probes) {
+    fmt::format_to(out, "  {:<18} {:.6g}", probe.name, probe.value);
+    if (probe.expected) fmt::format_to(out, "  expected {:.6g} within {:.2g}", probe.expected->value, probe.allowed());
+    fmt::format_to(out, "\n");
+  }
+}
+
+Json probes_json(const CheckReport& report) {
+  Json json = Json::object();
+  for (const ProbeValue& probe : report.probes) {
+    json[probe.name] = {{"value", probe.value}, {"within", probe.within()}};
+    if (!probe.expected) continue;
+    json[probe.name]["expected"] = probe.expected->value;
+    json[probe.name]["allowed"] = probe.allowed();
+  }
+  return json;
+}
+
 void print_worst(Out out, const CheckReport& report) {
   if (report.worst.empty()) return;
   fmt::format_to(out, "violations over {} frames\n  {:<18} {:>9} {:>9} {:>9} {:>9}  where\n", report.frames.size(), "",
@@ -125,6 +146,7 @@ std::string check_table(const CheckReport& report) {
   if (!report.findings.empty()) fmt::format_to(out, "found\n");
   print_lines(out, report.findings);
   print_last_step(out, report);
+  print_probes(out, report);
   print_worst(out, report);
   print_frames(out, report);
   return text;
@@ -147,6 +169,7 @@ std::string check_json(const CheckReport& report) {
                      {"unusable", report.unusable},
                      {"findings", report.findings},
                      {"last_step", last_step_json(report)},
+                     {"probes", probes_json(report)},
                      {"worst", verdicts_json(report.worst)},
                      {"frames", frames}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

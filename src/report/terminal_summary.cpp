@@ -42,6 +42,19 @@ void print_worst_elements(Out out, const RunSummary& s) {
   }
 }
 
+void print_probes(Out out, const RunSummary& s) {
+  if (s.probes.empty()) return;
+  fmt::format_to(out, "probes\n");
+  for (const ProbeValue& probe : s.probes) {
+    fmt::format_to(out, "  {:<16} {:.6g}", probe.name, probe.value);
+    if (probe.expected) {
+      fmt::format_to(out, "  {} {:.6g} within {:.2g} ({})", probe.within() ? "is" : "is not", probe.expected->value,
+                     probe.allowed(), probe.expected->source);
+    }
+    fmt::format_to(out, "\n");
+  }
+}
+
 void print_seconds(Out out, const RunSummary& s) {
   const RunSeconds& t = s.seconds;
   const double step = t.solver.total / std::max(1, s.steps_done);
@@ -66,6 +79,7 @@ std::string terminal_summary(const RunSummary& s, const std::string& folder) {
     print_violations(out, s);
   }
   print_worst_elements(out, s);
+  print_probes(out, s);
   print_seconds(out, s);
   for (const std::string& note : s.notes) fmt::format_to(out, "note: {}\n", note);
   if (folder.empty()) {

@@ -8,6 +8,7 @@
 #include "core/residuals.h"
 #include "core/result.h"
 #include "problems/scene.h"
+#include "study/probes.h"
 #include "study/verdicts.h"
 
 namespace taut {
@@ -39,6 +40,7 @@ struct CheckReport {
   std::vector<FrameVerdict> frames;  ///< those that could be judged
   std::vector<Verdict> worst;        ///< of each constraint over all frames, `elements` and `violated` summed up
   std::optional<RecomputedStep> last_step;
+  std::vector<ProbeValue> probes;     ///< of a run, computed from its last state
   int steps_done = 0;                 ///< of a run
   std::vector<std::string> unusable;  ///< what kept files from being judged
   std::vector<std::string> findings;  ///< what is not within tolerance, and claims that are not true

@@ -45,6 +45,7 @@ class RunCheck {
   void check_last_step();
   bool checkpoint_is_finite();
   void compare_claims(const StepRecord& claimed, const Residuals& found, double objective);
+  void check_probes(const StepRecord& claimed, const std::vector<double>& values);
   void find_excess(const Residuals& found);
   void find(std::string text) { report_.findings.push_back(std::move(text)); }
   void cannot(std::string text) { report_.unusable.push_back(std::move(text)); }
@@ -86,6 +87,7 @@ CheckReport RunCheck::go() {
 void RunCheck::check_summary() {
   const RunSummary& claimed = run_.summary;
   RunSummary found;
+  found.probes = probes_of(run_.scene);
   for (const StepRecord& record : run_.steps) {
     add_step(found, record);
     if (record.status == Status::solved && !record.residuals.within(run_.scene.solver.tolerance)) {
@@ -104,7 +106,7 @@ void RunCheck::check_summary() {
   found.counts.matrix_allocations = claimed.counts.matrix_allocations;
   const auto says = nlohmann::json::parse(summary_text(claimed)), adds_up = nlohmann::json::parse(summary_text(found));
   for (const char* key :
-       {"input_hash", "status", "message", "steps", "objective", "residuals", "violations", "counts"}) {
+       {"input_hash", "status", "message", "steps", "objective", "residuals", "violations", "counts", "probes"}) {
     for (const auto& change : nlohmann::json::diff(says[key], adds_up[key])) {
       const nlohmann::json::json_pointer place(change["path"].get<std::string>());
       find(fmt::format("summary.json: {}{} is {}, but steps.jsonl and problem.json give {}", key,
@@ -260,6 +262,7 @@ void RunCheck::check_last_step() {
     Residuals& found = report_.last_step->residuals;
     name_for_people(found, problem, *model_);
     compare_claims(claimed, found, objective(problem, result.x));
+    check_probes(claimed, probe_values(run_.scene, *model_, problem, result.x));
     find_excess(found);
   } catch (const std::invalid_argument& error) {
     cannot(std::string("checkpoint.bin: does not fit the problem: ") + error.what());
@@ -291,6 +294,27 @@ void RunCheck::compare_claims(const StepRecord& claimed, const Residuals& found,
     for (const Violation& told : says.violations) {
       if (told.constraint == violation.constraint)
         compare("violation of " + told.constraint, told.max, violation.max, 1);
+    }
+  }
+}
+
+void RunCheck::check_probes(const StepRecord& claimed, const std::vector<double>& values) {
+  report_.probes = probes_of(run_.scene);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    ProbeValue& probe = report_.probes[k];
+    probe.value = values[k];
+    const auto told = std::find_if(claimed.probes.begin(), claimed.probes.end(),
+                                   [&](const auto& named) { return named.first == probe.name; });
+    // Displacements are small differences of positions, reactions of forces.
+    if (told == claimed.probes.end()) {
+      find(fmt::format("probe {} of step {} is not in steps.jsonl", probe.name, claimed.step));
+    } else if (!(std::abs(told->second - probe.value) <= residual_round_off * std::abs(probe.value))) {
+      find(fmt::format("probe {} of step {} is {:.12g}, but steps.jsonl says {:.12g}", probe.name, claimed.step,
+                       probe.value, told->second));
+    }
+    if (!probe.within() && claimed.step == run_.scene.time.steps) {
+      find(fmt::format("probe {} is {:.6g}, expected {:.6g} within {:.3g} ({})", probe.name, probe.value,
+                       probe.expected->value, probe.allowed(), probe.expected->source));
     }
   }
 }

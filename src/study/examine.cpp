@@ -100,7 +100,9 @@ std::vector<WorstElement> worst_elements(const Problem& problem, const Vector& x
 std::string vertex_name(const Model& model, Index vertex) {
   for (const BodyRange& body : model.bodies) {
     if (vertex >= body.first_vertex && vertex < body.first_vertex + body.vertices) {
-      return "vertex " + std::to_string(vertex - body.first_vertex) + " of " + body.name;
+      const Index at = vertex - body.first_vertex;
+      const std::string level = body.levels == 1 ? "" : " (level " + std::to_string(at % body.levels) + ")";
+      return "vertex " + std::to_string(at / body.levels) + level + " of " + body.name;
     }
   }
   return "vertex " + std::to_string(vertex);

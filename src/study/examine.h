@@ -24,7 +24,7 @@ std::vector<Penetration> penetrations(const Model& model, const Vector& x);
 /// that is inside.
 std::vector<WorstElement> worst_elements(const Problem& problem, const Vector& x, int count);
 
-/// "vertex 3 of cloth" for a vertex of the scene.
+/// "vertex 3 of cloth" for a vertex of the scene, "vertex 3 (level 1) of plate" in a thick shell (level 0: bottom).
 std::string vertex_name(const Model& model, Index vertex);
 
 /// "triangle 17 of cloth" for a triangle of the scene.

@@ -8,6 +8,7 @@
 
 #include "core/residuals.h"
 #include "core/result.h"
+#include "study/probes.h"
 
 namespace taut {
 
@@ -30,6 +31,7 @@ struct StepRecord {
   double objective = 0;    ///< the minimised sum of energies, J
   NamedNumbers energies;   ///< Stepper::energies(), J
   NamedNumbers penalties;  ///< by constraint
+  NamedNumbers probes;
   Counts counts;
   Timings seconds;     ///< the solver's
   double judging = 0;  ///< s
@@ -89,6 +91,7 @@ struct RunSummary {
   int worst_elements_step = 0;  ///< the first step that is not solved, or else the last
   std::vector<WorstElement> worst_elements;
   std::optional<UnfinishedStep> unfinished;
+  std::vector<ProbeValue> probes;  ///< after the last step
   Counts counts;
   RunSeconds seconds;
   std::int64_t peak_memory_bytes = 0;

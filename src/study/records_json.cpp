@@ -129,6 +129,32 @@ Json worst_elements_json(const RunSummary& summary) {
   return json;
 }
 
+Json probes_json(const RunSummary& summary) {
+  Json json = Json::object();
+  for (const ProbeValue& probe : summary.probes) {
+    json[probe.name]["value"] = probe.value;
+    if (!probe.expected) continue;
+    json[probe.name]["expected"] = {{"value", probe.expected->value},
+                                    {probe.expected->relative ? "relative" : "absolute", probe.expected->tolerance},
+                                    {"source", probe.expected->source}};
+    json[probe.name]["within"] = probe.within();
+  }
+  return json;
+}
+
+std::vector<ProbeValue> read_probes(const Json& json) {
+  std::vector<ProbeValue> probes;
+  for (const auto& [name, probe] : json.items()) {
+    ProbeValue& read = probes.emplace_back(ProbeValue{name, number(probe.at("value")), {}});
+    if (!probe.contains("expected")) continue;
+    const Json& expected = probe["expected"];
+    const bool relative = expected.contains("relative");
+    read.expected = {number(expected.at("value")), number(expected.at(relative ? "relative" : "absolute")), relative,
+                     expected.at("source")};
+  }
+  return probes;
+}
+
 Json unfinished_json(const std::optional<UnfinishedStep>& unfinished) {
   if (!unfinished) return nullptr;
   return {{"step", unfinished->step},
@@ -170,6 +196,7 @@ StepRecord step_of(const Json& json) {
   record.objective = number(json.at("objective"));
   record.energies = read_numbers(json.at("energies"));
   record.penalties = read_numbers(json.at("penalties"));
+  if (json.contains("probes")) record.probes = read_numbers(json["probes"]);
   const Json &counts = json.at("counts"), &seconds = json.at("seconds");
   record.counts.outer = counts.at("outer");
   record.counts.linear_solves = counts.at("linear_solves");
@@ -203,6 +230,7 @@ RunSummary summary_of(const Json& json) {
     s.unfinished = UnfinishedStep{u.at("step"), u.at("message"), number(u.at("stationarity")),
                                   number(u.at("feasibility")), number(u.at("complementarity"))};
   }
+  if (json.contains("probes")) s.probes = read_probes(json["probes"]);
   read_counts(json.at("counts"), s.counts);
   read_seconds(json.at("seconds"), s.seconds);
   s.peak_memory_bytes = json.at("peak_memory_bytes");
@@ -232,6 +260,7 @@ std::string summary_text(const RunSummary& s) {
   json["worst_elements_step"] = s.worst_elements_step;
   json["worst_elements"] = worst_elements_json(s);
   json["unfinished_step"] = unfinished_json(s.unfinished);
+  json["probes"] = probes_json(s);
   json["counts"] = counts_json(s.counts);
   json["counts"]["symbolic_analyses"] = s.counts.symbolic_analyses;
   json["counts"]["matrix_allocations"] = s.counts.matrix_allocations;
@@ -268,6 +297,7 @@ std::string step_line(const StepRecord& record) {
   json["objective"] = record.objective;
   json["energies"] = numbers_json(record.energies);
   json["penalties"] = numbers_json(record.penalties);
+  if (!record.probes.empty()) json["probes"] = numbers_json(record.probes);
   json["counts"] = counts_json(record.counts);
   json["seconds"] = {{"total", record.seconds.total}};
   json["seconds"].update(timings_json(record.seconds));

@@ -6,11 +6,13 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "core/stopwatch.h"
 #include "problems/build.h"
 #include "study/examine.h"
 #include "study/frame_output.h"
+#include "study/load_step.h"
 #include "study/machine.h"
 
 namespace taut {
@@ -104,6 +106,9 @@ bool Run::begin() {
   summary_.problem = scene_.name;
   summary_.solver = solver_->name();
   summary_.steps_asked = scene_.time.steps;
+  const std::vector<ProbeValue> measured = std::exchange(summary_.probes, probes_of(scene_));
+  for (std::size_t k = 0; k < std::min(measured.size(), summary_.probes.size()); ++k)
+    summary_.probes[k].value = measured[k].value;
   summary_.version = options_.version;
   summary_.machine = machine;
   summary_.threads = threads_;
@@ -115,7 +120,7 @@ bool Run::begin() {
   if (!folder_) return true;
   const Stopwatch watch(summary_.seconds.output);
   if (from) {
-    folder_->go_on(*from);
+    folder_->go_on(scene_, *from);
   } else {
     folder_->begin(scene_, {false, threads_, stepper_->state(), summary_, {}});
   }
@@ -143,8 +148,8 @@ void Run::loop() {
 
 /// False where the run ends here.
 bool Run::step() {
-  const Problem& problem = stepper_->prepare();
-  const Result result = solver_->solve(problem, stepper_->state().warm, budget_);
+  const Result result = solve_step(*stepper_, *solver_, scene_.solver.tolerance, scene_.time.halvings, budget_);
+  const Problem& problem = stepper_->problem();
   const bool cut_short = (result.status == Status::interrupted && budget_.interrupted()) ||
                          (result.status == Status::time_limit && budget_.out_of_time());
   if (cut_short) {
@@ -180,6 +185,8 @@ StepRecord Run::judge(const Problem& problem, const Result& result) {
     record.residuals = residuals(problem, result);
     record.penetrations = penetrations(*model_, result.x);
     record.objective = objective(problem, result.x);
+    const std::vector<double> values = probe_values(scene_, *model_, problem, result.x);
+    for (std::size_t k = 0; k < values.size(); ++k) record.probes.emplace_back(scene_.output.probes[k].name, values[k]);
   }
   name_for_people(record.residuals, problem, *model_);
   record.step = stepper_->state().step + 1;

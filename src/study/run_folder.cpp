@@ -1,5 +1,7 @@
 #include "study/run_folder.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -16,6 +18,7 @@ constexpr const char* checkpoint_file = "checkpoint.bin";
 constexpr const char* summary_file = "summary.json";
 constexpr const char* steps_file = "steps.jsonl";
 constexpr const char* problem_file = "problem.json";
+constexpr const char* probes_file = "probes.csv";
 constexpr const char* before_prefix = "before ";
 
 /// The state before the last step, under names of its own. Its positions and velocities are the previous ones of the
@@ -113,20 +116,35 @@ void RunFolder::begin(const Scene& scene, const Continuation& start) {
   fs::remove(file(summary_file));
   remove_frames_after(path_, -1);
   steps_.emplace(file(steps_file));
+  fs::remove(file(probes_file));
+  if (!scene.output.probes.empty()) {
+    probes_.emplace(file(probes_file));
+    std::string head = "step,time";
+    for (const scene::Probe& probe : scene.output.probes) head += "," + probe.name;
+    probes_->append(head);
+  }
   write_atomically(file(problem_file), problem_text(scene));
 }
 
-void RunFolder::go_on(const Continuation& from) try {
+void RunFolder::go_on(const Scene& scene, const Continuation& from) try {
   steps_.emplace(file(steps_file), from.state.step);
+  if (!scene.output.probes.empty()) probes_.emplace(file(probes_file), from.state.step + 1);
   fs::remove(file(summary_file));
 } catch (const FileError& error) {
   throw RunRefused(std::string(error.what()) + "; cannot be resumed");
 }
 
-void RunFolder::append_step(const StepRecord& record) { steps_->append(step_line(record)); }
+void RunFolder::append_step(const StepRecord& record) {
+  steps_->append(step_line(record));
+  if (!probes_) return;
+  std::string line = fmt::format("{},{}", record.step, record.time);
+  for (const auto& [name, value] : record.probes) line += fmt::format(",{}", value);
+  probes_->append(line);
+}
 
 void RunFolder::write_checkpoint(const std::string& input_hash, const Continuation& now) {
   steps_->sync();
+  if (probes_) probes_->sync();
   replace_checkpoint(input_hash, now);
 }
 
@@ -141,6 +159,7 @@ void RunFolder::replace_checkpoint(const std::string& input_hash, const Continua
 
 void RunFolder::write_summary(RunSummary& summary) const {
   summary.files = {checkpoint_file, problem_file, steps_file, summary_file};
+  if (probes_) summary.files.emplace_back(probes_file);
   for (const auto& entry : fs::recursive_directory_iterator(path_)) {
     const std::string extension = entry.path().extension().string();
     const bool ours = extension == ".vtu" || extension == ".obj" || extension == ".svg" || extension == ".pvd";

@@ -29,7 +29,8 @@ struct Continuation {
   std::optional<State> before;
 };
 
-/// The folder that a run writes to: checkpoint.bin, summary.json, steps.jsonl, problem.json; frames and pictures are
+/// The folder that a run writes to: checkpoint.bin, summary.json, steps.jsonl, problem.json, probes.csv where there are
+/// probes; frames and pictures are
 /// FrameOutput's.
 class RunFolder {
  public:
@@ -45,7 +46,7 @@ class RunFolder {
   /// Starts with an empty log of steps; replaces an earlier run. Throws RunRefused where the folder cannot be made.
   void begin(const Scene& scene, const Continuation& start);
   /// Goes on after continuation(): drops what is later than it. Throws RunRefused where steps are missing.
-  void go_on(const Continuation& from);
+  void go_on(const Scene& scene, const Continuation& from);
 
   void append_step(const StepRecord& record);
   /// Forces the steps to disk and replaces the checkpoint.
@@ -57,7 +58,7 @@ class RunFolder {
   std::filesystem::path file(const char* name) const { return path_ / name; }
 
   std::filesystem::path path_;
-  std::optional<LineFile> steps_;
+  std::optional<LineFile> steps_, probes_;
 };
 
 }  // namespace taut

@@ -42,6 +42,7 @@ SurfaceFields::SurfaceFields(const Model& model) : model_(model), rest_(model.tr
   for (const auto& energy : model.elastic) {
     if (const auto* membrane = dynamic_cast<const Membrane*>(energy.get())) take_rest(membrane->triangles());
   }
+  take_rest(model.surfaces);
   for (std::size_t k = 0; k < model.constraints.size(); ++k) {
     const StrainLimitTriangles* limit = strain_limit(*model.constraints[k]);
     if (!limit) continue;
@@ -69,7 +70,9 @@ std::vector<double> SurfaceFields::largest_stretch(const Vector& positions) cons
 
 Frame SurfaceFields::frame(const State& state, double time) const {
   const std::size_t cells = model_.triangles.size();
-  Field velocity{"velocity", 3, {state.velocities.begin(), state.velocities.end()}}, body{"body", 1, {}};
+  const Vector moved = state.positions - model_.positions;
+  Field velocity{"velocity", 3, {state.velocities.begin(), state.velocities.end()}}, body{"body", 1, {}},
+      displacement{"displacement", 3, {moved.begin(), moved.end()}};
   for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
     body.values.insert(body.values.end(), static_cast<std::size_t>(model_.bodies[i].vertices), static_cast<double>(i));
   }
@@ -93,7 +96,8 @@ Frame SurfaceFields::frame(const State& state, double time) const {
       if (!multipliers.segment(row, rows).isZero(0)) active.values[triangle] = 1;
     }
   }
-  return {time, state.positions, model_.triangles, {velocity, body}, {sigma_max, sigma_min, tension, active}};
+  return {
+      time, state.positions, model_.triangles, {velocity, body, displacement}, {sigma_max, sigma_min, tension, active}};
 }
 
 }  // namespace taut

@@ -11,9 +11,10 @@
 
 namespace taut {
 
-/// What a frame shows of a state. At points: velocity (m/s) and body (its number). In cells, from the membranes and
-/// strain limits of the model: sigma_max and sigma_min (singular values; NaN where no rest shape is known), tension
-/// (N/m) and active (1 where a multiplier of a strain limit is not zero).
+/// What a frame shows of a state. At points: velocity (m/s), body (its number) and displacement (m, from the start). In
+/// cells, from the membranes, the surfaces of thick shells and the strain limits of the model: sigma_max and sigma_min
+/// (singular values; NaN where no rest shape is known), tension (N/m) and active (1 where a multiplier of a strain
+/// limit is not zero).
 ///
 /// The tension is the largest eigenvalue of 2 Lambda for limits of matrix form, the largest multiplier for those of
 /// singular values; 0 without a limit.

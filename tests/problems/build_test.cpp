@@ -95,7 +95,8 @@ class Catalogue : public testing::TestWithParam<std::string> {};
 
 std::vector<std::string> catalogue_names() {
   std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(TAUT_CATALOGUE)) names.push_back(entry.path().stem().string());
+  for (const auto& entry : fs::directory_iterator(TAUT_CATALOGUE))
+    if (entry.is_regular_file()) names.push_back(entry.path().stem().string());
   std::sort(names.begin(), names.end());
   return names;
 }

@@ -1,0 +1,99 @@
+#include "study/probes.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace taut {
+namespace {
+
+using scene::Quantity;
+
+/// The gradient of the sum of energies, N.
+Vector gradient_of(const Problem& problem, const Vector& x) {
+  std::array<double, max_stencil_width> local, gradient;
+  Vector sum = Vector::Zero(x.size());
+  for (const Energy* energy : problem.energies) {
+    const Stencils& stencils = energy->stencils();
+    for (Index element = 0; element < stencils.count(); ++element) {
+      stencils.gather(element, x, local.data());
+      energy->evaluate(element, local.data(), gradient.data(), nullptr, Curvature::exact);
+      for (int i = 0; i < stencils.width(); ++i) sum[stencils[element][i]] += gradient[i];
+    }
+  }
+  return sum;
+}
+
+/// The elastic energy whose elements are in a body, J.
+double elastic_energy(const Model& model, const BodyRange& body, const Vector& x) {
+  std::array<double, max_stencil_width> local;
+  double sum = 0;
+  for (const auto& energy : model.elastic) {
+    const Stencils& stencils = energy->stencils();
+    for (Index element = 0; element < stencils.count(); ++element) {
+      const int vertex = stencils[element][0] / 3;
+      if (vertex < body.first_vertex || vertex >= body.first_vertex + body.vertices) continue;
+      stencils.gather(element, x, local.data());
+      sum += energy->evaluate(element, local.data(), nullptr, nullptr, Curvature::exact);
+    }
+  }
+  return sum;
+}
+
+/// The sum of the vectors at the nodes.
+Vector3 sum_over(const std::vector<int>& nodes, const Vector& values) {
+  Vector3 sum = Vector3::Zero();
+  for (const int node : nodes) sum += values.segment<3>(3 * node);
+  return sum;
+}
+
+}  // namespace
+
+double ProbeValue::allowed() const {
+  if (!expected) return std::numeric_limits<double>::infinity();
+  return expected->relative ? expected->tolerance * std::abs(expected->value) : expected->tolerance;
+}
+
+bool ProbeValue::within() const { return !expected || std::abs(value - expected->value) <= allowed(); }
+
+std::vector<ProbeValue> probes_of(const Scene& scene) {
+  std::vector<ProbeValue> probes;
+  for (const scene::Probe& probe : scene.output.probes)
+    probes.push_back({probe.name, std::numeric_limits<double>::quiet_NaN(), probe.expected});
+  return probes;
+}
+
+std::vector<double> probe_values(const Scene& scene, const Model& model, const Problem& problem, const Vector& x) {
+  std::vector<double> values;
+  std::optional<Vector> gradient;
+  for (std::size_t k = 0; k < scene.output.probes.size(); ++k) {
+    const scene::Probe& probe = scene.output.probes[k];
+    const std::vector<int>& nodes = model.probed[k];
+    const auto mean_displacement = [&] {
+      return Vector3(sum_over(nodes, x - model.positions) / static_cast<double>(nodes.size()));
+    };
+    double value = 0;
+    switch (probe.quantity) {
+      case Quantity::position:
+        value = sum_over(nodes, x)[probe.axis] / static_cast<double>(nodes.size());
+        break;
+      case Quantity::displacement:
+        value = mean_displacement()[probe.axis];
+        break;
+      case Quantity::displacement_length:
+        value = mean_displacement().norm();
+        break;
+      case Quantity::force:
+        if (!gradient) gradient = gradient_of(problem, x);
+        value = sum_over(nodes, *gradient)[probe.axis];
+        break;
+      case Quantity::energy:
+        value = elastic_energy(model, model.bodies[static_cast<std::size_t>(probe.body)], x);
+        break;
+    }
+    values.push_back(probe.factor * value);
+  }
+  return values;
+}
+
+}  // namespace taut
