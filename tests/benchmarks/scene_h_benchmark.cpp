@@ -1,7 +1,7 @@
 // Whole time steps of scene H, through the same calls as `taut solve` but without judging, files and pictures in the
 // measured time. One iteration is a run from the start: 100 steps (one second) up to 64 cells, 30 steps at
-// 128 and 10 at 256, where the cloth is still falling and the limit is active near the pins only. Runs are repeatable to the
-// last bit, so the counters other than seconds are exact; compare seconds on a quiet machine only.
+// 128 and 10 at 256, where the cloth is still falling and the limit is active near the pins only. Runs are repeatable
+// to the last bit, so the counters other than seconds are exact; compare seconds on a quiet machine only.
 
 #include <benchmark/benchmark.h>
 
