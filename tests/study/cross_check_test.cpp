@@ -20,11 +20,12 @@ TEST(CrossCheck, ThreeMethodsAgreeOnAFallingCloth) {
   }
 }
 
-/// How many of the 20 steps of coincident_stretches one penalty that never grows solves, with either form of the limit.
+/// How many of 7 steps of coincident_stretches one penalty that never grows solves, with either form of the limit.
 int solved_with_a_fixed_penalty(const std::string& penalty, const std::string& form) {
   const std::string file = std::string(TAUT_CATALOGUE) + "/coincident_stretches.json";
-  const std::vector<State> states = states_of(read_scene(file), 20);
-  EXPECT_EQ(states.size(), 20u);  // the default solver, in matrix form, solves every step
+  std::vector<State> all = states_of(read_scene(file), 20), states;
+  EXPECT_EQ(all.size(), 20u);  // the default solver, in matrix form, solves every step
+  for (std::size_t k = 1; k < all.size(); k += 3) states.push_back(all[k]);
   const Scene scene = read_scene(
       file, {{"solver.central_path", "false"}, {"solver.fixed_penalty", penalty}, {"constraints.limit.form", form}});
   const auto solver = build_solver(scene, 1);
@@ -36,10 +37,10 @@ int solved_with_a_fixed_penalty(const std::string& penalty, const std::string& f
 }
 
 TEST(LimitForms, TheMatrixFormSolvesStepsWhereTheSingularValueFormFails) {
-  EXPECT_EQ(solved_with_a_fixed_penalty("2000", "matrix"), 20);
+  EXPECT_EQ(solved_with_a_fixed_penalty("2000", "matrix"), 7);
   const int matrix = solved_with_a_fixed_penalty("500", "matrix");
-  EXPECT_GE(matrix, 17);
-  EXPECT_LE(solved_with_a_fixed_penalty("500", "singular_values"), matrix - 5);
+  EXPECT_GE(matrix, 5);
+  EXPECT_LE(solved_with_a_fixed_penalty("500", "singular_values"), matrix - 2);
 }
 
 }  // namespace
