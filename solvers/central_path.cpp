@@ -39,8 +39,10 @@ class CentralPath {
       width_ = 1e-6;
       set_point(x);
       width_ = std::clamp(0.3 * worst_mismatch_, 1e-5, 0.1);
+      set_point(x);
     }
-    measure(x, true);
+    ++counts_.function_evaluations;
+    measure_forces(x, true);
   }
 
   double width() const { return width_; }
@@ -53,7 +55,11 @@ class CentralPath {
   bool step(const Vector& x) {
     start_width_ = target_width_ = width_;
     if (centred()) target_width_ = std::max(std::sqrt(options_.reduction) * width_, options_.smallest_width);
-    if (!matrix_is_here_) measure(x, true);
+    if (!matrix_is_here_) {
+      const Stopwatch watch(timings_.assembly);
+      assembly_.hessian(x, Curvature::positive_semidefinite, &gradient_);
+      matrix_is_here_ = true;
+    }
     right_hand_side_ = gradient_;
     {
       const Stopwatch watch(timings_.assembly);
@@ -85,27 +91,33 @@ class CentralPath {
   }
 
   /// Halves the step until the merit does not rise much or the path is near, or takes the best fraction tried. The
-  /// first trial is usually taken, so the next matrix is made along with its forces.
+  /// first trial is usually taken, so the next matrix is made along with its forces; where the multipliers' mismatch
+  /// alone is too large, neither is.
   void advance(Vector& x) {
     const double before = merit_;
     double fraction = std::min(1.0, 0.9 * assembly_.largest_step(x, step_));
     double best_fraction = fraction, best = std::numeric_limits<double>::infinity();
-    for (int halving = 0; halving < options_.max_halvings; ++halving) {
+    bool accepted = false;
+    for (int halving = 0; halving < options_.max_halvings && !accepted; ++halving) {
       if (halving > 0) fraction *= 0.5;
-      move(x, fraction, halving == 0);
-      if (merit_ < best) {
+      const double tolerated = options_.tolerated_rise * (1 - 0.1 * fraction) * before;
+      move(x, fraction);
+      // A shorter width raises the merit of a point that was on the path.
+      const bool may_be_near = target_width_ < start_width_ && centred();
+      if (merit_ <= tolerated || may_be_near) {
+        measure_forces(trial_, halving == 0);
+        const bool near = may_be_near && force_ <= width_ * force_scale_;
+        accepted = merit_ <= tolerated || (near && std::isfinite(merit_));
+      }
+      if (merit_ < best || accepted) {
         best = merit_;
         best_fraction = fraction;
       }
-      const bool tolerable = merit_ <= options_.tolerated_rise * (1 - 0.1 * fraction) * before;
-      // A shorter width raises the merit of a point that was on the path.
-      const bool near = target_width_ < start_width_ && centred() && force_ <= width_ * force_scale_;
-      if (tolerable || (near && std::isfinite(merit_))) {
-        best_fraction = fraction;
-        break;
-      }
     }
-    if (fraction != best_fraction) move(x, best_fraction, false);
+    if (!accepted) {
+      move(x, best_fraction);
+      measure_forces(trial_, false);
+    }
     short_steps_ = best_fraction < 0.2 ? short_steps_ + 1 : 0;
     std::swap(x, trial_);
   }
@@ -113,22 +125,22 @@ class CentralPath {
  private:
   bool centred() const { return worst_mismatch_ <= options_.centred * width_; }
 
-  /// Positions, multipliers and epsilon at a fraction of the step, measured.
-  void move(const Vector& x, double fraction, bool with_matrix) {
+  /// Positions, multipliers and epsilon at a fraction of the step, and the mismatch there.
+  void move(const Vector& x, double fraction) {
     trial_ = x + fraction * step_;
     for (std::size_t k = 0; k < slacks_.size(); ++k) {
       slacks_[k].set_multipliers(start_multipliers_[k] + fraction * multiplier_steps_[k]);
     }
     width_ = std::sqrt((1 - fraction) * start_width_ * start_width_ + fraction * target_width_ * target_width_);
-    measure(trial_, with_matrix);
+    ++counts_.function_evaluations;
+    const Stopwatch watch(timings_.assembly);
+    set_point(trial_);
   }
 
-  /// Where x and the multipliers stand: sum of w J^T lambda and gradients, and the mismatch of the multipliers; with
-  /// the matrix of the Newton step from here where that is wanted.
-  void measure(const Vector& x, bool with_matrix) {
+  /// Gradients and sum of w J^T lambda at the point set, into the merit; with the matrix of the Newton step from here
+  /// where that is wanted.
+  void measure_forces(const Vector& x, bool with_matrix) {
     const Stopwatch watch(timings_.assembly);
-    ++counts_.function_evaluations;
-    set_point(x);
     if (with_matrix) {
       assembly_.hessian(x, Curvature::positive_semidefinite, &gradient_);
     } else {
@@ -139,6 +151,7 @@ class CentralPath {
     merit_ += gradient_.squaredNorm() / (force_scale_ * force_scale_);
   }
 
+  /// How badly the multipliers fit at x, which is the first part of the merit.
   void set_point(const Vector& x) {
     worst_mismatch_ = merit_ = 0;
     for (EliminatedSlack& slack : slacks_) {

@@ -37,6 +37,7 @@ struct Totals {
     const double linear_algebra = timings.factorization + timings.solve;
     state.counters["seconds_per_step"] = timings.total / steps;
     state.counters["newton_per_step"] = static_cast<double>(counts.linear_solves) / steps;
+    state.counters["evaluations_per_step"] = static_cast<double>(counts.function_evaluations) / steps;
     state.counters["ratio"] = timings.total / linear_algebra;
     state.counters["factor_share"] = timings.factorization / timings.total;
     state.counters["assembly_share"] = timings.assembly / timings.total;
