@@ -75,7 +75,7 @@ void EqualitySystem::find_penalties(double shift) {
   penalties_.resize(rows_.rows());
   for (Index i = 0; i < penalties_.size(); ++i) {
     const double one = compliance[i] > 0 ? compliance[i] : largest > 0 ? largest : 1.0;
-    penalties_[i] = 1e6 / one;
+    penalties_[i] = 1e8 / one;
   }
 }
 
@@ -125,12 +125,10 @@ QuasiDefiniteSystem::QuasiDefiniteSystem(const Assembly& assembly, const Equalit
     }
   }
   values_.resize(static_cast<Index>(slots_.size()) + rows().nonZeros() + m);
-  Index next = static_cast<Index>(slots_.size());
   for (Index column = 0; column < n; ++column) {
     for (SparseMatrix::InnerIterator entry(rows(), column); entry; ++entry) {
       row_of.push_back(static_cast<int>(n + entry.row()));
       column_of.push_back(static_cast<int>(column));
-      values_[next++] = entry.value();
     }
   }
   for (Index i = 0; i < m; ++i) {
@@ -153,16 +151,25 @@ bool QuasiDefiniteSystem::factorize_penalised(double shift) {
   const double* values = assembly().matrix().valuePtr();
   for (std::size_t i = 0; i < slots_.size(); ++i) values_[static_cast<Index>(i)] = values[slots_[i]];
   for (const Index i : diagonal_) values_[i] += shift;
-  values_.tail(rows().rows()) = -penalties().cwiseInverse();
+  // Rows scaled so that all of the matrix is about as large as H.
+  const Vector& mu = penalties();
+  const double stiffness = diagonal_.empty() ? 1 : values_(diagonal_).cwiseAbs().mean();
+  scales_ = (1e-8 * stiffness * mu).cwiseSqrt();
+  Index next = static_cast<Index>(slots_.size());
+  for (Index column = 0; column < rows().outerSize(); ++column) {
+    for (SparseMatrix::InnerIterator entry(rows(), column); entry; ++entry)
+      values_[next++] = scales_[entry.row()] * entry.value();
+  }
+  values_.tail(mu.size()) = -scales_.cwiseAbs2().cwiseQuotient(mu);
   return factor_->factorize(values_) && factor_->negative_pivots() == rows().rows();
 }
 
 void QuasiDefiniteSystem::solve_penalised(Vector& step, Vector& multipliers) {
   right_hand_side_.resize(step.size() + multipliers.size());
-  right_hand_side_ << step, multipliers;
+  right_hand_side_ << step, scales_.cwiseProduct(multipliers);
   factor_->solve(right_hand_side_);
   step = right_hand_side_.head(step.size());
-  multipliers = right_hand_side_.tail(multipliers.size());
+  multipliers = scales_.cwiseProduct(right_hand_side_.tail(multipliers.size()));
 }
 
 namespace {

@@ -18,13 +18,13 @@ class EqualitySystem : public NewtonSystem {
   void solve(const Vector& gradient, const Vector& violation, Vector& step, Vector& multiplier_step) final;
 
  protected:
-  /// All is borrowed. The assembly is in its final order.
+  /// All is borrowed. The assembly is in its final order, which QuasiDefiniteSystem wants to be the natural one.
   EqualitySystem(const Assembly& assembly, const EqualityRows& equalities, const std::vector<int>& fixed);
 
   const Assembly& assembly() const { return assembly_; }
   /// A with columns in the assembly's order, those of fixed variables zero.
   const SparseMatrix& rows() const { return rows_; }
-  /// mu of each row: 1e6 times the stiffness against it that the diagonal of H tells.
+  /// mu of each row: 1e8 times the stiffness against it that the diagonal of H tells.
   const Vector& penalties() const { return penalties_; }
 
   virtual bool factorize_penalised(double shift) = 0;
@@ -53,7 +53,7 @@ class QuasiDefiniteSystem final : public EqualitySystem {
 
   std::vector<Index> slots_;  // entries of the assembled matrix in the lower triangle
   std::vector<Index> diagonal_;
-  Vector values_, right_hand_side_;
+  Vector scales_, values_, right_hand_side_;
   std::unique_ptr<SymmetricIndefinite> factor_;
 };
 

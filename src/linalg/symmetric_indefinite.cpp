@@ -61,6 +61,7 @@ SymmetricIndefinite::SymmetricIndefinite(Index size, const std::vector<int>& row
       d.order[static_cast<std::size_t>(order[k])] = static_cast<int>(k) + 1;
     d.mumps.perm_in = d.order.data();
   }
+  d.icntl(8) = 0;    // no scaling: that takes longer than it saves, and who calls can do better
   d.icntl(12) = 1;   // the usual ordering, no compression of 2x2 pivots, which would need values
   d.icntl(14) = 50;  // per cent of memory for pivots that are delayed
   if (size == 0) return;

@@ -7,7 +7,8 @@
 
 namespace taut {
 
-/// Sparse L D L^T factor of a symmetric matrix that may be indefinite, with 1x1 and 2x2 pivots (MUMPS). One symbolic
+/// Sparse L D L^T factor of a symmetric matrix that may be indefinite, with 1x1 and 2x2 pivots (MUMPS). The matrix is
+/// taken as it comes: rows and columns of very different size are for the caller to scale. One symbolic
 /// analysis, then any number of numeric factorisations.
 class SymmetricIndefinite {
  public:
