@@ -15,6 +15,7 @@ class EqualityRows {
 
   Index count() const { return rows_.rows(); }
   const SparseMatrix& rows() const { return rows_; }
+  const Vector& values() const { return values_; }
   /// The values b of another problem with the same rows.
   void update(const Problem& problem);
   /// A x - b; zero where all of it is round-off of x.

@@ -61,6 +61,8 @@ SymmetricIndefinite::SymmetricIndefinite(Index size, const std::vector<int>& row
       d.order[static_cast<std::size_t>(order[k])] = static_cast<int>(k) + 1;
     d.mumps.perm_in = d.order.data();
   }
+  // Measured: at 0.01, the default, an indefinite matrix took 70 times as long as a quasi-definite one.
+  d.mumps.cntl[0] = 1e-6;  // smallest pivot, relative to its column
   d.icntl(8) = 0;    // no scaling: that takes longer than it saves, and who calls can do better
   d.icntl(12) = 1;   // the usual ordering, no compression of 2x2 pivots, which would need values
   d.icntl(14) = 50;  // per cent of memory for pivots that are delayed
