@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
+#include "constraints/coupling.h"
 #include "geometry/mesh_file.h"
 #include "geometry/selection.h"
 #include "geometry/topology.h"
+#include "problems/cover_shape.h"
 
 namespace taut {
 namespace {
@@ -26,7 +29,10 @@ std::pair<TriangleMesh, std::string> untransformed_mesh(const Body& body) {
                    return std::pair(make_grid(grid.size.x(), grid.size.y(), grid.cells_x, grid.cells_y, grid.diagonals),
                                     body.name);
                  },
-                 [](const MeshFile& file) { return std::pair(read_mesh(file.path), file.path.string()); }},
+                 [](const MeshFile& file) { return std::pair(read_mesh(file.path), file.path.string()); },
+                 [](const Refinement&) -> std::pair<TriangleMesh, std::string> {
+                   throw std::logic_error("a refinement has no mesh of its own");
+                 }},
       body.mesh);
 }
 
@@ -127,6 +133,25 @@ void find_rest_shape(const Body& body, BodyShape& shape) {
   shape.rest = rest_triangles(shape.mesh.triangles, shape.rest_positions, shape.first_node);
 }
 
+/// Mesh, prolongation and carriers of a cover, with its imperfection.
+void find_cover(const Body& body, const BodyShape& shell, BodyShape& shape) {
+  const TriangleMesh surface = carrying_surface(shell, body.cover->surface);
+  if (const auto* refinement = std::get_if<Refinement>(&body.mesh)) {
+    std::tie(shape.mesh, shape.prolongation) = refine(surface, refinement->levels);
+  } else {
+    shape.mesh = placed_mesh(body);
+    shape.prolongation = prolongation(surface, shape.mesh.vertices, body.name);
+    right_inverse(surface, *shape.prolongation, body.name);  // throws where P is rank deficient
+  }
+  shape.carrying_triangles = surface.triangles;
+  for (int v = 0; v < static_cast<int>(surface.vertices.size()); ++v)
+    shape.carriers.push_back(shell.mean_nodes(v, body.cover->surface));
+  if (body.cover->amplitude == 0) return;
+  const std::vector<Vector3> bumps =
+      imperfection(shape.mesh, *shape.prolongation, body.cover->amplitude, body.cover->seed);
+  for (std::size_t i = 0; i < bumps.size(); ++i) shape.mesh.vertices[i] += bumps[i];
+}
+
 template <class Names, class Select>
 std::vector<int> union_of(const Names& names, Select&& select) {
   std::vector<int> all;
@@ -170,7 +195,7 @@ std::vector<int> BodyShape::nodes_at(int vertex, Surface surface) const {
 
 std::vector<int> BodyShape::mean_nodes(int vertex, Surface surface) const {
   const int low = (levels() - 1) / 2;
-  if (surface == Surface::mid && layered->layers % 2 == 1) return {node(vertex, low), node(vertex, low + 1)};
+  if (surface == Surface::mid && layered && layered->layers % 2 == 1) return {node(vertex, low), node(vertex, low + 1)};
   return loaded_nodes(vertex, surface);
 }
 
@@ -189,7 +214,10 @@ BodyShape make_body_shape(const Scene& scene, std::size_t index, const BodyShape
     shape.first_triangle = before->first_triangle + static_cast<int>(before->rest.size());
   }
   try {
-    shape.mesh = placed_mesh(body);
+    if (body.cover)
+      find_cover(body, *before, shape);
+    else
+      shape.mesh = placed_mesh(body);
     if (body.shell) add_layers(body, shape);
   } catch (const std::exception& error) {
     throw InputError(scene.source, pointer + "/mesh", error.what());
@@ -204,6 +232,8 @@ BodyShape make_body_shape(const Scene& scene, std::size_t index, const BodyShape
   } catch (const std::exception& error) {
     throw InputError(scene.source, pointer + "/rest", error.what());
   }
+  if (body.cover)
+    make_compatible(*shape.prolongation, carrying_surface(*before, body.cover->surface).vertices, shape.mesh.vertices);
   return shape;
 }
 

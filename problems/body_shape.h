@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/layered_mesh.h"
+#include "geometry/prolongation.h"
 #include "geometry/rest_shape.h"
 #include "geometry/triangle_mesh.h"
 #include "problems/scene.h"
@@ -23,6 +24,13 @@ struct BodyShape {
   std::vector<std::array<Vector2, 3>> rest_uv;  ///< m, one triple per triangle; empty otherwise
   std::vector<RestTriangle> rest;  ///< on scene nodes: the mesh; of thick shells bottom (inside out), then top
 
+  std::optional<Prolongation> prolongation;  ///< of covers, from the surface of their shell
+  std::vector<std::vector<int>> carriers;    ///< of covers: scene nodes whose mean is each vertex of that surface
+  std::vector<Triangle> carrying_triangles;  ///< of covers: those of that surface
+
+  const Triangle& carrying_triangle(const Anchor& anchor) const {
+    return carrying_triangles[static_cast<std::size_t>(anchor.triangle)];
+  }
   int levels() const { return layered ? layered->layers + 1 : 1; }
   int nodes() const { return static_cast<int>(mesh.vertices.size()) * levels(); }
   /// The scene's node at a vertex; level 0 is the bottom.
@@ -40,7 +48,7 @@ struct BodyShape {
 };
 
 /// Reads or makes the mesh of scene.bodies[index], places it and finds its rest shape. `before` is the body built just
-/// before, or null. Throws InputError for a mesh or a rest shape that cannot be used.
+/// before, or null; of a cover it is the shell. Throws InputError for a mesh or a rest shape that cannot be used.
 BodyShape make_body_shape(const Scene& scene, std::size_t index, const BodyShape* before);
 
 /// The vertices of the mesh selected, counted within the body, ascending. Throws InputError with `pointer` where there

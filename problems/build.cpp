@@ -51,6 +51,7 @@ void add_material(const Scene& scene, const scene::Body& body, const BodyShape& 
         std::make_unique<Membrane>("membrane of " + body.name, shape.rest, body.membrane->law, lame, body.thickness),
         body.damping.stiffness, model);
   }
+  if (body.cover && body.cover->foundation > 0) add_elastic(foundation_of(body, shape), body.damping.stiffness, model);
   if (body.bending) {
     const double stiffness = body.bending->stiffness;
     const auto& triangles = shape.mesh.triangles;
@@ -76,6 +77,7 @@ std::unique_ptr<Solver> build_augmented_lagrangian(const Scene& scene, int threa
   options.penalty_growth = scene.solver.penalty_growth;
   options.fixed_penalty = scene.solver.fixed_penalty;
   options.warm_multipliers = scene.solver.warm_multipliers;
+  options.equalities = scene.solver.equalities;
   options.null_space = scene.solver.method == scene::SolverMethod::null_space;
   options.inner_tolerance_factor = scene.solver.inner_tolerance_factor;
   options.max_outer = scene.solver.max_outer;
@@ -149,6 +151,7 @@ std::unique_ptr<Model> build_model(const Scene& scene) {
   for (std::size_t k = 0; k < shapes.size(); ++k) add_mesh(scene.bodies[k], shapes[k], *model);
   for (std::size_t k = 0; k < shapes.size(); ++k) add_material(scene, scene.bodies[k], shapes[k], *model);
   add_constraints(scene, shapes, *model);
+  add_couplings(scene, shapes, *model);
   refuse_more_than_nlopt_takes(scene, *model);
   add_loads(scene, shapes, *model);
   for (const scene::Probe& probe : scene.output.probes) model->probed.push_back(probed_nodes(scene, shapes, probe));

@@ -112,15 +112,15 @@ void add_obstacle(std::unique_ptr<Constraint> obstacle, const scene::Motion& mot
   model.constraints.push_back(std::move(obstacle));
 }
 
-double diagonal(const Vector& positions) {
+}  // namespace
+
+double scene_size(const Vector& positions) {
   const Eigen::Map<const Eigen::Matrix3Xd> points(positions.data(), 3, positions.size() / 3);
   return (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
 }
 
-}  // namespace
-
 void add_constraints(const Scene& scene, const std::vector<BodyShape>& shapes, Model& model) {
-  const double scene_size = diagonal(model.positions);
+  const double size = scene_size(model.positions);
   PinCollector pins(scene, model.positions);
   for (const scene::Constraint& constraint : scene.constraints) {
     const BodyShape& shape = shapes[constraint.body];
@@ -136,8 +136,7 @@ void add_constraints(const Scene& scene, const std::vector<BodyShape>& shapes, M
     } else if (const auto* limit = std::get_if<scene::StrainLimit>(&constraint.kind)) {
       model.constraints.push_back(strain_limit(limited_triangles(scene, constraint, shape), *limit));
     } else if (const auto* half = std::get_if<scene::HalfSpace>(&constraint.kind)) {
-      auto obstacle =
-          std::make_unique<HalfSpace>(constraint.name, shape.name, scene_nodes(), shape.first_node, scene_size);
+      auto obstacle = std::make_unique<HalfSpace>(constraint.name, shape.name, scene_nodes(), shape.first_node, size);
       const auto place = [at = obstacle.get(), half = *half](double time) {
         at->place(half.motion.position(half.point, time), half.motion.direction(half.normal, time));
       };
@@ -145,7 +144,7 @@ void add_constraints(const Scene& scene, const std::vector<BodyShape>& shapes, M
     } else {
       const auto& sphere = std::get<scene::Sphere>(constraint.kind);
       auto obstacle = std::make_unique<SphereObstacle>(constraint.name, shape.name, scene_nodes(), shape.first_node,
-                                                       scene_size, sphere.radius);
+                                                       size, sphere.radius);
       const auto place = [at = obstacle.get(), sphere](double time) {
         at->place(sphere.motion.position(sphere.center, time));
       };

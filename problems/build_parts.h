@@ -14,6 +14,16 @@ namespace taut {
 std::vector<std::unique_ptr<Energy>> add_shell(const Scene& scene, const scene::Body& body, const BodyShape& shape,
                                                Model& model);
 
+/// The foundation of a cover that has one.
+std::unique_ptr<Energy> foundation_of(const scene::Body& body, const BodyShape& shape);
+
+/// Adds the couplings of covers to their shells to a model whose pins are there, and notes what a person should know:
+/// far points, wrinkles that would be too long, pins that decide coupling equations alone. Throws MeshError.
+void add_couplings(const Scene& scene, const std::vector<BodyShape>& shapes, Model& model);
+
+/// Diagonal of the box around all nodes, m.
+double scene_size(const Vector& positions);
+
 /// Adds the scene's pins, strain limits and obstacles to a model whose positions are there. Throws InputError.
 void add_constraints(const Scene& scene, const std::vector<BodyShape>& shapes, Model& model);
 

@@ -13,6 +13,7 @@
 #include "energies/membrane.h"
 #include "energies/prism_shell.h"
 #include "geometry/grid.h"
+#include "solvers/augmented_lagrangian.h"
 #include "solvers/nlopt.h"
 
 namespace taut {
@@ -45,6 +46,10 @@ struct Grid {
 };
 struct MeshFile {
   std::filesystem::path path;
+};
+/// Of a cover: its shell's mesh, every triangle divided into four this often.
+struct Refinement {
+  int levels = 1;
 };
 struct Transform {
   double scale = 1;
@@ -86,13 +91,21 @@ struct ThickShell {
 };
 /// Nodes of a thick shell at a mesh vertex; of cloth the only one, whatever is asked for.
 enum class Surface { both, bottom, top, mid };
+/// What makes a body the fine membrane of the shell before it in the list.
+struct Cover {
+  Surface surface = Surface::top;
+  double foundation = 0;             ///< Pa/m; 0: none
+  double amplitude = 0;              ///< of the imperfection, m
+  unsigned seed = 1;                 ///< of the imperfection
+  std::optional<double> farthest{};  ///< m
+};
 struct Damping {
   double mass = 0;       ///< 1/s
   double stiffness = 0;  ///< s
 };
 struct Body {
   std::string name;
-  std::variant<Grid, MeshFile> mesh;
+  std::variant<Grid, MeshFile, Refinement> mesh;
   Transform transform;
   Rest rest;
   double thickness = 0;  ///< m
@@ -100,7 +113,8 @@ struct Body {
   Mass mass = Mass::lumped;
   std::optional<Membrane> membrane;
   std::optional<Bending> bending;
-  std::optional<ThickShell> shell;             ///< without it the body is cloth
+  std::optional<ThickShell> shell;  ///< without it the body is cloth
+  std::optional<Cover> cover;
   Damping damping;                             ///< zero: none
   Vector3 initial_velocity = Vector3::Zero();  ///< m/s
 };
@@ -233,6 +247,7 @@ struct Solver {
   int max_outer = 100;
   int max_newton = 1000;  ///< per step
   double inner_tolerance_factor = 0.5;
+  EqualityForm equalities = EqualityForm::quasi_definite;
   IpoptSettings ipopt;
   NloptSettings nlopt;
   OnFailure on_failure = OnFailure::stop;

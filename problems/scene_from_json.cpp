@@ -25,7 +25,10 @@ class SceneReader : public ShellReader {
     result.source = source_;
     result.time = time(json["time"]);
     result.gravity = vector(json["gravity"]);
-    for (const auto& [name, value] : json["bodies"].items()) result.bodies.push_back(body(name, value));
+    for (const auto& [name, value] : json["bodies"].items()) {
+      result.bodies.push_back(body(name, value));
+      if (value["model"] == "wrinkled_shell") result.bodies.push_back(cover(result.bodies.back(), value));
+    }
     bodies_ = &result.bodies;
     for (const auto& [name, value] : json["constraints"].items()) result.constraints.push_back(constraint(name, value));
     for (const auto& [name, value] : json["loads"].items()) result.loads.push_back(load(name, value));
@@ -66,13 +69,24 @@ class SceneReader : public ShellReader {
       result.mesh = MeshFile{mesh_path(json["mesh"]["file"], pointer + "/mesh/file")};
     result.transform = transform(json["transform"], pointer + "/transform");
     result.rest = rest(json["rest"], pointer + "/rest");
-    if (json["model"] == "thick_shell") {
+    const bool wrinkled = json["model"] == "wrinkled_shell";
+    if (json.contains("cover") != wrinkled)
+      wrinkled ? missing(pointer + "/cover", "an object (\"model\" is \"wrinkled_shell\")")
+               : refuse(pointer + "/cover", "\"cover\"", "none of it unless \"model\" is \"wrinkled_shell\"");
+    if (json["model"] == "thick_shell" || (wrinkled && !json.contains("membrane") && !json.contains("bending"))) {
       result.shell = shell(json, pointer);
     } else {
       check_cloth(json, pointer);
       result.thickness = json["thickness"];
       result.density = json["density"];
     }
+    cloth(json, result);
+    result.initial_velocity = vector(json["initial_velocity"]);
+    return result;
+  }
+
+  /// What any sheet has.
+  static void cloth(const Json& json, Body& result) {
     result.mass = choose<Mass>(json["mass"], {{"lumped", Mass::lumped}, {"consistent", Mass::consistent}});
     if (json.contains("membrane")) {
       const Json& membrane = json["membrane"];
@@ -82,7 +96,37 @@ class SceneReader : public ShellReader {
     }
     if (json.contains("bending")) result.bending = Bending{json["bending"]["stiffness"]};
     result.damping = {json["damping"]["mass"], json["damping"]["stiffness"]};
-    result.initial_velocity = vector(json["initial_velocity"]);
+  }
+
+  /// The fine membrane of a wrinkled shell, a body of its own.
+  Body cover(const Body& shell, const Json& shell_json) const {
+    const std::string pointer = "/bodies/" + shell.name + "/cover";
+    const Json& json = shell_json["cover"];
+    Body result;
+    result.name = shell.name + "/cover";
+    const Json& mesh = json["mesh"];
+    if (mesh.contains("refine"))
+      result.mesh = Refinement{mesh["refine"]};
+    else if (mesh.contains("grid"))
+      result.mesh = grid(mesh["grid"]);
+    else
+      result.mesh = MeshFile{mesh_path(mesh["file"], pointer + "/mesh/file")};
+    result.transform = transform(json["transform"], pointer + "/transform");
+    result.rest.scale = json["rest_scale"];
+    result.thickness = json["thickness"];
+    result.density = json["density"];
+    cloth(json, result);
+    result.initial_velocity = shell.initial_velocity;
+    Cover cover;
+    cover.surface = surface(json, shell, pointer, shell.shell ? Surface::top : Surface::mid, true);
+    if (cover.surface == Surface::both) refuse(pointer + "/surface", "\"both\"", "top, bottom, mid");
+    if (json.contains("foundation")) cover.foundation = json["foundation"]["stiffness"];
+    if (json.contains("imperfection")) {
+      cover.amplitude = json["imperfection"]["amplitude"];
+      cover.seed = json["imperfection"]["seed"];
+    }
+    cover.farthest = optional_number(json, "farthest");
+    result.cover = cover;
     return result;
   }
 
@@ -315,6 +359,8 @@ class SceneReader : public ShellReader {
     result.max_outer = json["max_outer"];
     result.max_newton = json["max_newton"];
     result.inner_tolerance_factor = json["inner_tolerance_factor"];
+    result.equalities = choose<EqualityForm>(
+        json["equalities"], {{"quasi_definite", EqualityForm::quasi_definite}, {"penalised", EqualityForm::penalised}});
     result.ipopt = {json["ipopt"]["max_iterations"], json["ipopt"]["warm_start"]};
     result.nlopt.algorithm =
         choose<NloptAlgorithm>(json["nlopt"]["algorithm"], {{"slsqp", NloptAlgorithm::slsqp},

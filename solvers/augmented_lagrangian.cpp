@@ -8,6 +8,7 @@
 
 #include "core/stopwatch.h"
 #include "solvers/eliminated_slack.h"
+#include "solvers/equality_system.h"
 #include "solvers/null_space_system.h"
 
 namespace taut {
@@ -51,16 +52,22 @@ void AugmentedLagrangianOptions::validate() const {
 struct AugmentedLagrangian::Workspace {
   std::uint64_t topology = 0;
   std::deque<EliminatedSlack> slacks;
+  EqualityRows equalities;
   Assembly assembly;
-  std::unique_ptr<Cholesky> cholesky;  // null with the null space
+  std::unique_ptr<Cholesky> cholesky;  // null with equalities or the null space
   std::unique_ptr<NewtonSystem> system;
 
-  Workspace(const Problem& problem, bool null_space, int threads)
+  Workspace(const Problem& problem, bool null_space, EqualityForm form, int threads)
       : topology(problem.topology),
         slacks(problem.constraints.size() ? make_slacks(problem) : std::deque<EliminatedSlack>{}),
+        equalities(problem),
         assembly(problem.size(), terms(problem), null_space ? std::vector<int>{} : problem.fixed_variables, threads) {
     if (null_space) {
-      system = std::make_unique<NullSpaceSystem>(assembly, problem);
+      system = std::make_unique<NullSpaceSystem>(assembly, equalities, problem);
+    } else if (equalities.count() > 0 && form == EqualityForm::penalised) {
+      system = std::make_unique<PenalisedRowsSystem>(assembly, equalities, problem.fixed_variables, threads);
+    } else if (equalities.count() > 0) {
+      system = std::make_unique<QuasiDefiniteSystem>(assembly, equalities, problem.fixed_variables);
     } else {
       assembly.set_order(fill_reducing_order(assembly.graph()));
       cholesky = std::make_unique<Cholesky>(assembly.matrix(), threads);
@@ -98,12 +105,12 @@ struct AugmentedLagrangian::Run {
         problem(p),
         budget(b),
         work(w),
-        newton(w.assembly, *w.system, p.fixed_variables, p.node_size, o.newton) {}
+        newton(w.assembly, *w.system, w.equalities, p.fixed_variables, p.node_size, o.newton) {}
 
   void start(const WarmStart& warm);
   double automatic_penalty(const Constraint& constraint) const;
   Status inner(NewtonState& state);
-  void update(const Vector& x);
+  void update(const NewtonState& state);
   bool update_penalties();
   bool closest_compromise(NewtonState& state);
   bool central_path();
@@ -164,6 +171,10 @@ void AugmentedLagrangian::Run::start(const WarmStart& warm) {
     result.multipliers.push_back(slack.multipliers());
     result.penalties.push_back(automatic);
   }
+  work.equalities.update(problem);
+  const Vector equal = work.equalities.stacked(warm.multipliers, work.slacks.size());
+  work.equalities.put(options.warm_multipliers ? equal : Vector(Vector::Zero(equal.size())), work.slacks.size(),
+                      result.multipliers);
   judged = residuals(problem, result);
 }
 
@@ -178,6 +189,7 @@ Status AugmentedLagrangian::Run::inner(NewtonState& state) {
         // shells would be asked for a balance below their round-off.
         if (work.slacks.empty() && ++seen % 8 == 0) {
           result.x = now.x;
+          work.equalities.put(now.multipliers, 0, result.multipliers);
           judged = residuals(problem, result);
           smallest = 0.5 * options.tolerances.stationarity * judged.force_scale;
         }
@@ -192,15 +204,16 @@ Status AugmentedLagrangian::Run::inner(NewtonState& state) {
 }
 
 /// lambda <- lambda+ at x, and judges the outcome.
-void AugmentedLagrangian::Run::update(const Vector& x) {
-  result.x = x;
+void AugmentedLagrangian::Run::update(const NewtonState& state) {
+  result.x = state.x;
+  work.equalities.put(state.multipliers, work.slacks.size(), result.multipliers);
   ++result.counts.outer;
   for (std::size_t k = 0; k < work.slacks.size(); ++k) {
     EliminatedSlack& slack = work.slacks[k];
     // Constraint values are of order one (squared stretches) or the scene's size, so this bounds lambda far above any
     // feasible problem's.
     const double cap = 1e6 * start_penalty[k] * slack.constraint().violation_scale();
-    slack.updated_multipliers(x, cap, result.multipliers[k]);
+    slack.updated_multipliers(state.x, cap, result.multipliers[k]);
     slack.set_multipliers(result.multipliers[k]);
   }
   judged = residuals(problem, result);
@@ -252,6 +265,7 @@ bool AugmentedLagrangian::Run::closest_compromise(NewtonState& state) {
           probe.multipliers.emplace_back();
           slack.updated_multipliers(now.x, std::numeric_limits<double>::infinity(), probe.multipliers.back());
         }
+        work.equalities.put(now.multipliers, work.slacks.size(), probe.multipliers);
         scale = residuals(problem, probe).force_scale;
         return now.nodal_norm <= 1e-4 * scale || result.counts.linear_solves >= options.max_newton;
       },
@@ -267,14 +281,14 @@ bool AugmentedLagrangian::Run::closest_compromise(NewtonState& state) {
 /// Tries the central path from the warm start; on success `result` and `judged` hold the solution, else the warm start
 /// is restored.
 bool AugmentedLagrangian::Run::central_path() {
-  if (!options.central_path.enabled || !work.cholesky || work.slacks.empty()) return false;
+  if (!options.central_path.enabled || options.null_space || work.slacks.empty()) return false;
   const Result start = result;
   const Residuals start_judged = judged;
   for (EliminatedSlack& slack : work.slacks) slack.set_penalty(options.central_path.penalty_fraction * slack.penalty());
-  Vector x = result.x;
+  Vector x = result.x, equal = work.equalities.stacked(result.multipliers, work.slacks.size());
   const bool solved = follow_central_path(
-      work.assembly, *work.cholesky, work.slacks, problem.node_size, judged.force_scale,
-      options.tolerances.stationarity * judged.force_scale, options.central_path, options.threads, x,
+      work.assembly, *work.system, work.equalities, work.slacks, problem.node_size, judged.force_scale,
+      options.tolerances.stationarity * judged.force_scale, options.central_path, options.threads, x, equal,
       [&](const Vector& candidate) {
         result.x = candidate;
         // Projected multipliers vanish where a constraint is not active; the path's own are positive everywhere, but
@@ -282,6 +296,7 @@ bool AugmentedLagrangian::Run::central_path() {
         for (std::size_t k = 0; k < work.slacks.size(); ++k) {
           work.slacks[k].updated_multipliers(candidate, std::numeric_limits<double>::infinity(), result.multipliers[k]);
         }
+        work.equalities.put(equal, work.slacks.size(), result.multipliers);
         judged = residuals(problem, result);
         if (judged.within(options.tolerances)) return merit(judged);
         for (std::size_t k = 0; k < work.slacks.size(); ++k) keep_significant(work.slacks[k], result.multipliers[k]);
@@ -306,6 +321,7 @@ void AugmentedLagrangian::Run::loop() {
   }
   NewtonState state;
   state.x = result.x;
+  state.multipliers = work.equalities.stacked(result.multipliers, work.slacks.size());
   last_violation.assign(work.slacks.size(), std::numeric_limits<double>::infinity());
   Result best = result;
   Residuals best_judged = judged;
@@ -327,7 +343,7 @@ void AugmentedLagrangian::Run::loop() {
     const Status inner_status = inner(state);
     if (inner_status == Status::not_finite)
       return finish(inner_status, "a value, a force or a Newton step is not finite");
-    update(state.x);
+    update(state);
     if (merit(judged) < merit(best_judged)) {
       best.x = result.x;
       best.multipliers = result.multipliers;
@@ -352,6 +368,7 @@ void AugmentedLagrangian::Run::loop() {
       if (closest_compromise(state)) {
         result.x = state.x;
         result.multipliers = bounded;
+        work.equalities.put(state.multipliers, work.slacks.size(), result.multipliers);
         judged = residuals(problem, result);
         // With a finite penalty the energies violate feasible constraints a little, too: a point that was much closer
         // tells that there is more to gain.
@@ -362,6 +379,7 @@ void AugmentedLagrangian::Run::loop() {
         }
         if (!closest) {
           state.x = best.x;
+          state.multipliers = work.equalities.stacked(best.multipliers, work.slacks.size());
           for (std::size_t k = 0; k < work.slacks.size(); ++k) {
             work.slacks[k].set_multipliers(bounded[k]);
             work.slacks[k].set_penalty(start_penalty[k]);
@@ -380,10 +398,11 @@ AugmentedLagrangian::AugmentedLagrangian(AugmentedLagrangianOptions options) : o
 }
 AugmentedLagrangian::~AugmentedLagrangian() = default;
 
-AugmentedLagrangian::Size AugmentedLagrangian::size() const {
-  if (!workspace_ || !workspace_->cholesky) return {};
-  return {workspace_->cholesky->factor_flops(), workspace_->cholesky->factor_nonzeros(),
-          workspace_->assembly.memory_bytes() + workspace_->cholesky->memory_bytes()};
+NewtonSystem::Size AugmentedLagrangian::size() const {
+  if (!workspace_) return {};
+  NewtonSystem::Size total = workspace_->system->size();
+  total.bytes += workspace_->assembly.memory_bytes();
+  return total;
 }
 
 Result AugmentedLagrangian::solve(const Problem& problem, const WarmStart& warm, const Budget& budget) {
@@ -396,7 +415,7 @@ Result AugmentedLagrangian::solve(const Problem& problem, const WarmStart& warm,
       const Stopwatch analysis_watch(analysis);
       problem.validate();
       workspace_.reset();
-      workspace_ = std::make_unique<Workspace>(problem, options_.null_space, options_.threads);
+      workspace_ = std::make_unique<Workspace>(problem, options_.null_space, options_.equalities, options_.threads);
       analysed = true;
     }
     Run run(options_, problem, budget, *workspace_);

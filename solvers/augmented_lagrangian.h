@@ -8,6 +8,9 @@
 
 namespace taut {
 
+/// How linear equalities enter the Newton systems (equality_system.h).
+enum class EqualityForm { quasi_definite, penalised };
+
 struct AugmentedLagrangianOptions {
   Tolerances tolerances;
   double penalty = 1000;      ///< start, as a multiple of the stiffness of the energies seen by the constraint's rows
@@ -18,8 +21,9 @@ struct AugmentedLagrangianOptions {
   int max_outer = 100;                  ///< multiplier updates
   int max_newton = 1000;                ///< linear solves in all
   int threads = 1;
-  /// How pins are kept: substituted; or in the null space of their equations (null_space_system.h), without the central
-  /// path, as a check of the former.
+  EqualityForm equalities = EqualityForm::quasi_definite;
+  /// How pins and linear equalities are kept: substituted and as rows with multipliers; or in the null space of their
+  /// equations (null_space_system.h), without the central path, as a check of the former.
   bool null_space = false;
   double fixed_penalty = 0;         ///< positive: every constraint's penalty, which then never grows and is no multiple
   bool warm_multipliers = true;     ///< start at the multipliers of the step before
@@ -42,12 +46,8 @@ class AugmentedLagrangian final : public Solver {
   std::string name() const override { return options_.null_space ? "null_space" : "augmented_lagrangian"; }
   Result solve(const Problem& problem, const WarmStart& warm, const Budget& budget) override;
 
-  /// Flops and nonzeros of the factor, and bytes of the kept structures; zero before the first solve.
-  struct Size {
-    double factor_flops = 0, factor_nonzeros = 0;
-    std::size_t bytes = 0;
-  };
-  Size size() const;
+  /// Of the factor, the assembly's bytes included; zero before the first solve.
+  NewtonSystem::Size size() const;
 
  private:
   struct Workspace;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/stopwatch.h"
-#include "solvers/newton.h"
 
 namespace taut {
 namespace {
@@ -17,10 +16,12 @@ using Linearisation = EliminatedSlack::Linearisation;
 /// The iteration's data, so that its parts read as what they are.
 class CentralPath {
  public:
-  CentralPath(Assembly& assembly, Cholesky& cholesky, std::deque<EliminatedSlack>& slacks, int node_size,
-              double force_scale, const CentralPathOptions& options, int threads, Counts& counts, Timings& timings)
+  CentralPath(Assembly& assembly, NewtonSystem& system, const EqualityRows& equalities,
+              std::deque<EliminatedSlack>& slacks, int node_size, double force_scale, const CentralPathOptions& options,
+              int threads, Vector& equal, Counts& counts, Timings& timings)
       : assembly_(assembly),
-        cholesky_(cholesky),
+        system_(system),
+        equalities_(equalities),
         slacks_(slacks),
         node_size_(node_size),
         force_scale_(force_scale),
@@ -28,6 +29,7 @@ class CentralPath {
         threads_(threads),
         counts_(counts),
         timings_(timings),
+        equal_(equal),
         multiplier_steps_(slacks.size()),
         start_multipliers_(slacks.size()) {}
 
@@ -71,15 +73,12 @@ class CentralPath {
     {
       const Stopwatch watch(timings_.factorization);
       ++counts_.factorizations;
-      if (!cholesky_.factorize(assembly_.matrix())) return false;
+      if (!system_.factorize(0)) return false;
     }
     {
       const Stopwatch watch(timings_.solve);
       ++counts_.linear_solves;
-      assembly_.to_ordered(right_hand_side_, ordered_);
-      cholesky_.solve(ordered_, solution_);
-      assembly_.from_ordered(solution_, step_);
-      step_ = -step_;
+      system_.solve(right_hand_side_, violation_, step_, equal_step_);
     }
     const Stopwatch watch(timings_.assembly);
     for (std::size_t k = 0; k < slacks_.size(); ++k) {
@@ -87,7 +86,8 @@ class CentralPath {
       start_multipliers_[k] = slacks_[k].multipliers();
       if (!multiplier_steps_[k].allFinite()) return false;
     }
-    return step_.allFinite();
+    start_equal_ = equal_;
+    return step_.allFinite() && equal_step_.allFinite();
   }
 
   /// Halves the step until the merit does not rise much or the path is near, or takes the best fraction tried. The
@@ -128,6 +128,7 @@ class CentralPath {
   /// Positions, multipliers and epsilon at a fraction of the step, and the mismatch there.
   void move(const Vector& x, double fraction) {
     trial_ = x + fraction * step_;
+    equal_ = start_equal_ + fraction * equal_step_;
     for (std::size_t k = 0; k < slacks_.size(); ++k) {
       slacks_[k].set_multipliers(start_multipliers_[k] + fraction * multiplier_steps_[k]);
     }
@@ -147,6 +148,12 @@ class CentralPath {
       assembly_.gradient(x, gradient_);
     }
     matrix_is_here_ = with_matrix;
+    equalities_.violation(x, violation_);
+    if (equalities_.count() > 0) {
+      equalities_.add_force(equal_, gradient_);
+      assembly_.clear_fixed(gradient_);
+      merit_ += violation_.squaredNorm() / x.squaredNorm();
+    }
     force_ = nodal_max_norm(gradient_, node_size_);
     merit_ += gradient_.squaredNorm() / (force_scale_ * force_scale_);
   }
@@ -163,7 +170,8 @@ class CentralPath {
   }
 
   Assembly& assembly_;
-  Cholesky& cholesky_;
+  NewtonSystem& system_;
+  const EqualityRows& equalities_;
   std::deque<EliminatedSlack>& slacks_;
   int node_size_;
   double force_scale_;
@@ -171,11 +179,13 @@ class CentralPath {
   int threads_;
   Counts& counts_;
   Timings& timings_;
+  Vector& equal_;
+  Vector equal_step_, start_equal_, violation_;
   int short_steps_ = 0;
   double width_ = 0, start_width_ = 0, target_width_ = 0;
   double force_ = 0, worst_mismatch_ = 0, merit_ = 0;
   bool matrix_is_here_ = false;
-  Vector gradient_, right_hand_side_, ordered_, solution_, step_, trial_;
+  Vector gradient_, right_hand_side_, step_, trial_;
   std::vector<Vector> multiplier_steps_, start_multipliers_;
 };
 
@@ -193,11 +203,13 @@ void CentralPathOptions::validate() const {
   require(max_iterations >= 1 && max_halvings >= 1, "max_iterations and max_halvings must be at least 1");
 }
 
-bool follow_central_path(Assembly& assembly, Cholesky& cholesky, std::deque<EliminatedSlack>& slacks, int node_size,
-                         double force_scale, double force_tolerance, const CentralPathOptions& options, int threads,
-                         Vector& x, const std::function<double(const Vector&)>& judge, const Budget& budget,
-                         Counts& counts, Timings& timings) {
-  CentralPath path(assembly, cholesky, slacks, node_size, force_scale, options, threads, counts, timings);
+bool follow_central_path(Assembly& assembly, NewtonSystem& system, const EqualityRows& equalities,
+                         std::deque<EliminatedSlack>& slacks, int node_size, double force_scale, double force_tolerance,
+                         const CentralPathOptions& options, int threads, Vector& x, Vector& equal,
+                         const std::function<double(const Vector&)>& judge, const Budget& budget, Counts& counts,
+                         Timings& timings) {
+  CentralPath path(assembly, system, equalities, slacks, node_size, force_scale, options, threads, equal, counts,
+                   timings);
   path.start(x);
   bool accepted = false;
   double ask_below = 1e-5;  // residuals that are too large shrink about as the width does

@@ -5,8 +5,8 @@
 
 #include "core/assembly.h"
 #include "core/solver.h"
-#include "linalg/cholesky.h"
 #include "solvers/eliminated_slack.h"
+#include "solvers/newton.h"
 
 namespace taut {
 
@@ -29,11 +29,13 @@ struct CentralPathOptions {
 /// curvature) it says so.
 ///
 /// `assembly` sums the problem's energies and the `slacks`; all are borrowed, and the slacks are left with their last
-/// multipliers. `judge(x)` gives the worst of the residuals over their tolerances; it is asked once smoothing and
-/// forces are small, and at most 1 ends the path with true.
-bool follow_central_path(Assembly& assembly, Cholesky& cholesky, std::deque<EliminatedSlack>& slacks, int node_size,
-                         double force_scale, double force_tolerance, const CentralPathOptions& options, int threads,
-                         Vector& x, const std::function<double(const Vector&)>& judge, const Budget& budget,
-                         Counts& counts, Timings& timings);
+/// multipliers. Linear equalities and their multipliers, `equal`, are part of every Newton step. `judge(x)` gives the
+/// worst of the residuals over their tolerances; it is asked once smoothing and forces are small, and at most 1 ends
+/// the path with true.
+bool follow_central_path(Assembly& assembly, NewtonSystem& system, const EqualityRows& equalities,
+                         std::deque<EliminatedSlack>& slacks, int node_size, double force_scale, double force_tolerance,
+                         const CentralPathOptions& options, int threads, Vector& x, Vector& equal,
+                         const std::function<double(const Vector&)>& judge, const Budget& budget, Counts& counts,
+                         Timings& timings);
 
 }  // namespace taut

@@ -227,7 +227,7 @@ Residuals judge_best(const Problem& problem, const Tolerances& tolerances, Resul
   const std::vector<Vector> raw = result.multipliers;
   for (double factor : {1e-2, 1.0, 1e2, 1e4}) {
     Result candidate = result;
-    for (std::size_t k = 0; k < raw.size(); ++k) {
+    for (std::size_t k = 0; k < problem.constraints.size(); ++k) {
       const double largest = raw[k].size() ? raw[k].lpNorm<Eigen::Infinity>() : 0.0;
       if (largest > 0)
         candidate.multipliers[k] = projected(*problem.constraints[k], result.x, raw[k], factor * largest);

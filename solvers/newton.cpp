@@ -26,16 +26,23 @@ double nodal_max_norm(const Vector& force, int node_size) {
   return std::sqrt(largest);
 }
 
-void SubstitutedSystem::solve(const Vector& gradient, Vector& step) {
+void SubstitutedSystem::solve(const Vector& gradient, const Vector& /*violation*/, Vector& step,
+                              Vector& multiplier_step) {
+  multiplier_step.resize(0);
   assembly_.to_ordered(gradient, right_hand_side_);
   cholesky_.solve(right_hand_side_, solution_);
   assembly_.from_ordered(solution_, step);
   step = -step;
 }
 
-Newton::Newton(Assembly& assembly, NewtonSystem& system, const std::vector<int>& fixed, int node_size,
-               NewtonOptions options)
-    : assembly_(assembly), system_(system), fixed_(fixed), node_size_(node_size), options_(options) {
+Newton::Newton(Assembly& assembly, NewtonSystem& system, const EqualityRows& equalities, const std::vector<int>& fixed,
+               int node_size, NewtonOptions options)
+    : assembly_(assembly),
+      system_(system),
+      equalities_(equalities),
+      fixed_(fixed),
+      node_size_(node_size),
+      options_(options) {
   options_.validate();
 }
 
@@ -43,6 +50,8 @@ void Newton::evaluate(NewtonState& state, Counts& counts, Timings& timings) {
   const Stopwatch watch(timings.assembly);
   ++counts.function_evaluations;
   state.value = assembly_.gradient(state.x, state.gradient);
+  equalities_.add_force(state.multipliers, state.gradient);
+  equalities_.violation(state.x, state.violation);
   for (int variable : fixed_) state.gradient[variable] = 0;
   state.nodal_norm = nodal_max_norm(state.gradient, node_size_);
 }
@@ -84,25 +93,32 @@ bool Newton::direction(const NewtonState& state, Counts& counts, Timings& timing
   if (!positive) return false;
   const Stopwatch watch(timings.solve);
   ++counts.linear_solves;
-  system_.solve(state.gradient, step_);
-  return step_.allFinite();
+  system_.solve(state.gradient, state.violation, step_, multiplier_step_);
+  return step_.allFinite() && multiplier_step_.allFinite();
 }
 
 /// Moves `state` along step_; false where no fraction of it decreases the value.
 bool Newton::line_search(NewtonState& state, Counts& counts, Timings& timings) {
-  const double slope = state.gradient.dot(step_);
+  double slope = state.gradient.dot(step_);
+  if (!state.violation.isZero(0)) {
+    // The gradient has A^T nu in it, of which the value knows nothing: nu . A step = -nu . violation.
+    weight_ = std::max(weight_, 2 * (state.multipliers + multiplier_step_).lpNorm<Eigen::Infinity>());
+    slope += state.multipliers.dot(state.violation) - weight_ * state.violation.lpNorm<1>();
+  }
   if (!(slope < 0)) return false;
+  const double start = merit(state);
   // Differences of the value below this are round-off; there the gradient decides.
-  const double noise = 1e-13 * std::abs(state.value) + 1e-300;
+  const double noise = 1e-13 * std::abs(start) + 1e-300;
   double fraction = std::min(1.0, options_.guard * assembly_.largest_step(state.x, step_));
   const double gradient_norm = state.gradient.norm();
   for (int halving = 0; halving < options_.max_halvings; ++halving, fraction *= 0.5) {
     trial_.x = state.x + fraction * step_;
+    trial_.multipliers = state.multipliers + fraction * multiplier_step_;
     evaluate(trial_, counts, timings);
     if (!std::isfinite(trial_.value) || !std::isfinite(trial_.nodal_norm)) continue;
     const double wanted = options_.sufficient_decrease * fraction * slope;
-    const bool decreased = trial_.value <= state.value + wanted;
-    const bool in_noise = trial_.value <= state.value + noise && trial_.gradient.norm() <= gradient_norm;
+    const bool decreased = merit(trial_) <= start + wanted;
+    const bool in_noise = merit(trial_) <= start + noise && trial_.gradient.norm() <= gradient_norm;
     if (decreased || in_noise) {
       std::swap(state, trial_);
       return true;
@@ -113,10 +129,12 @@ bool Newton::line_search(NewtonState& state, Counts& counts, Timings& timings) {
 
 Status Newton::minimise(NewtonState& state, const std::function<bool(const NewtonState&)>& done, const Budget& budget,
                         Counts& counts, Timings& timings) {
+  if (state.multipliers.size() != equalities_.count()) state.multipliers.setZero(equalities_.count());
   evaluate(state, counts, timings);
+  weight_ = 0;
   if (!std::isfinite(state.value) || !std::isfinite(state.nodal_norm)) return Status::not_finite;
   for (int iteration = 0;; ++iteration) {
-    if (done(state)) return Status::solved;
+    if (state.violation.isZero(0) && done(state)) return Status::solved;
     if (iteration == options_.max_iterations) return Status::iteration_limit;
     if (budget.interrupted()) return Status::interrupted;
     if (budget.out_of_time()) return Status::time_limit;

@@ -5,6 +5,7 @@
 #include "core/assembly.h"
 #include "core/solver.h"
 #include "linalg/cholesky.h"
+#include "solvers/equality_rows.h"
 
 namespace taut {
 
@@ -19,28 +20,42 @@ struct NewtonOptions {
 /// Where a minimisation stands.
 struct NewtonState {
   Vector x;
-  Vector gradient;  ///< zero at fixed variables
+  Vector multipliers;  ///< of the linear equalities, nu
+  Vector gradient;     ///< of the value, plus A^T nu; zero at fixed variables
+  Vector violation;    ///< A x - b
   double value = 0;
   double nodal_norm = 0;  ///< largest Euclidean norm of the gradient over nodes, N
 };
 
-/// Solves for Newton steps that keep the fixed variables, with the matrix that an assembly holds.
+/// Solves for Newton steps that keep the fixed variables, with the matrix H that an assembly holds.
 class NewtonSystem {
  public:
   virtual ~NewtonSystem() = default;
-  /// Factorises the matrix plus `shift` times the identity; false where that is not positive definite.
+  /// Factorises the matrix plus `shift` times the identity; false where that is not positive definite among the steps
+  /// that keep fixed variables and equalities.
   virtual bool factorize(double shift) = 0;
-  /// step = -H^{-1} gradient among the steps that keep the fixed variables, which get zero.
-  virtual void solve(const Vector& gradient, Vector& step) = 0;
+  /// H step + A^T multiplier_step = -gradient and A step = -violation, A being the linear equalities; the fixed
+  /// variables get zero.
+  virtual void solve(const Vector& gradient, const Vector& violation, Vector& step, Vector& multiplier_step) = 0;
+
+  /// Flops and nonzeros of the factor, and bytes of the kept structures; zero where unknown.
+  struct Size {
+    double factor_flops = 0, factor_nonzeros = 0;
+    std::size_t bytes = 0;
+  };
+  virtual Size size() const { return {}; }
 };
 
-/// Fixed variables substituted by the assembly itself, CHOLMOD in the order of its matrix.
+/// Fixed variables substituted by the assembly itself, CHOLMOD in the order of its matrix; no equalities.
 class SubstitutedSystem final : public NewtonSystem {
  public:
   /// The assembly has been put in the order that `cholesky` has analysed; both are borrowed.
   SubstitutedSystem(const Assembly& assembly, Cholesky& cholesky) : assembly_(assembly), cholesky_(cholesky) {}
   bool factorize(double shift) override { return cholesky_.factorize(assembly_.matrix(), shift); }
-  void solve(const Vector& gradient, Vector& step) override;
+  void solve(const Vector& gradient, const Vector& violation, Vector& step, Vector& multiplier_step) override;
+  Size size() const override {
+    return {cholesky_.factor_flops(), cholesky_.factor_nonzeros(), cholesky_.memory_bytes()};
+  }
 
  private:
   const Assembly& assembly_;
@@ -50,13 +65,17 @@ class SubstitutedSystem final : public NewtonSystem {
 
 /// Semismooth Newton with an Armijo line search on a sum of energies. The exact Hessian is tried first; where it is not
 /// positive definite or its step fails, the positive semidefinite one serves for some iterations. A shift is added
-/// where even that is singular (slack static membranes).
+/// where even that is singular (slack static membranes). Where there are linear equalities, positions and their
+/// multipliers move together, and while they are violated the search is on value + rho |A x - b|_1 with rho above every
+/// multiplier [Nocedal and Wright 2006, 18.3].
 class Newton {
  public:
   /// `fixed` are the variables that stay; all is borrowed.
-  Newton(Assembly& assembly, NewtonSystem& system, const std::vector<int>& fixed, int node_size, NewtonOptions options);
+  Newton(Assembly& assembly, NewtonSystem& system, const EqualityRows& equalities, const std::vector<int>& fixed,
+         int node_size, NewtonOptions options);
 
-  /// Minimises from state.x (fixed variables stay) until done(state); returns solved, iteration_limit, stalled,
+  /// Minimises from state.x and state.multipliers (fixed variables stay) until the equalities hold and done(state);
+  /// returns solved, iteration_limit, stalled,
   /// not_finite, time_limit or interrupted. The state that `done` last saw is in `state`.
   Status minimise(NewtonState& state, const std::function<bool(const NewtonState&)>& done, const Budget& budget,
                   Counts& counts, Timings& timings);
@@ -66,12 +85,16 @@ class Newton {
   bool direction(const NewtonState& state, Counts& counts, Timings& timings);
   bool line_search(NewtonState& state, Counts& counts, Timings& timings);
 
+  double merit(const NewtonState& state) const { return state.value + weight_ * state.violation.lpNorm<1>(); }
+
   Assembly& assembly_;
   NewtonSystem& system_;
+  const EqualityRows& equalities_;
   const std::vector<int>& fixed_;
   int node_size_;
   NewtonOptions options_;
-  Vector step_;
+  double weight_ = 0;  // rho
+  Vector step_, multiplier_step_;
   NewtonState trial_;
   Curvature curvature_ = Curvature::positive_semidefinite;
   int wait_ = 0;  // iterations before the exact Hessian is tried again

@@ -7,6 +7,7 @@
 #include <deque>
 
 #include "core/assembly.h"
+#include "solvers/equality_rows.h"
 
 namespace taut {
 namespace {
@@ -84,7 +85,8 @@ class WeightedRows final : public Energy {
 struct NonlinearProgram::Data {
   std::uint64_t topology;
   std::vector<const Constraint*> constraints;
-  std::vector<Index> first_row;  // of each constraint
+  EqualityRows equalities;
+  std::vector<Index> first_row;  // of each constraint, and of the equalities behind them
   std::vector<int> free;         // variable of the problem for each of y
   std::vector<int> place;        // the inverse; -1 where fixed
   Vector full;                   // the problem's variables, scratch but for the fixed ones
@@ -108,9 +110,12 @@ struct NonlinearProgram::Data {
   /// Calls visit(constraint index, element, first row, rows) for every element at y.
   template <class Visit>
   void for_elements(const Vector& y, bool derivatives, const Visit& visit);
+  template <class Visit>
+  void for_equalities(const Visit& visit) const;
 };
 
-NonlinearProgram::Data::Data(const Problem& problem) : topology(problem.topology), constraints(problem.constraints) {
+NonlinearProgram::Data::Data(const Problem& problem)
+    : topology(problem.topology), constraints(problem.constraints), equalities(problem) {
   problem.validate();
   find_free(problem);
   build_rows();
@@ -128,15 +133,25 @@ void NonlinearProgram::Data::find_free(const Problem& problem) {
   }
 }
 
+/// The equalities' part of the Jacobian, which is constant: calls visit(row, variable of y, value).
+template <class Visit>
+void NonlinearProgram::Data::for_equalities(const Visit& visit) const {
+  for (Index column = 0; column < equalities.rows().outerSize(); ++column) {
+    if (place[static_cast<std::size_t>(column)] < 0) continue;
+    for (SparseMatrix::InnerIterator entry(equalities.rows(), column); entry; ++entry)
+      visit(first_row.back() + entry.row(), place[static_cast<std::size_t>(column)], entry.value());
+  }
+}
+
 void NonlinearProgram::Data::build_rows() {
   Index count = 0;
   for (const Constraint* constraint : constraints) {
     first_row.push_back(count);
     count += constraint->stencils().count() * constraint->set().smooth_rows();
   }
-  lower.resize(count);
-  upper.resize(count);
-  nu = Vector::Zero(count);
+  first_row.push_back(count);
+  lower.setZero(count + equalities.count());
+  upper = nu = lower;
   for (std::size_t k = 0; k < constraints.size(); ++k) {
     const Stencils& stencils = constraints[k]->stencils();
     const int rows = constraints[k]->set().smooth_rows();
@@ -152,6 +167,10 @@ void NonlinearProgram::Data::build_rows() {
       }
     }
   }
+  for_equalities([&](Index row, int column, double) {
+    jacobian.rows.push_back(static_cast<int>(row));
+    jacobian.columns.push_back(column);
+  });
 }
 
 void NonlinearProgram::Data::build_hessian(const Problem& problem) {
@@ -201,6 +220,8 @@ bool NonlinearProgram::fits(const Problem& problem) const {
 void NonlinearProgram::update(const Problem& problem) {
   Data& d = *data_;
   d.full = problem.initial_guess;
+  d.equalities.update(problem);
+  d.lower.tail(d.equalities.count()) = d.upper.tail(d.equalities.count()) = d.equalities.values();
   for (std::size_t i = 0; i < problem.fixed_variables.size(); ++i)
     d.full[problem.fixed_variables[i]] = problem.fixed_values[static_cast<Index>(i)];
   d.start = d.full(d.free);
@@ -229,6 +250,8 @@ void NonlinearProgram::constraints(const Vector& y, Vector& g) const {
   data_->for_elements(y, false, [&](std::size_t k, Index, Index first, const Rows& local) {
     std::copy_n(local.g.data(), data_->constraints[k]->set().smooth_rows(), g.data() + first);
   });
+  if (data_->equalities.count() == 0) return;
+  g.tail(data_->equalities.count()) = data_->equalities.rows() * data_->expand(y);
 }
 
 void NonlinearProgram::jacobian(const Vector& y, Vector& values) const {
@@ -245,6 +268,7 @@ void NonlinearProgram::jacobian(const Vector& y, Vector& values) const {
       next += rows;
     }
   });
+  data_->for_equalities([&](Index, int, double value) { values[next++] = value; });
 }
 
 void NonlinearProgram::hessian(const Vector& y, double sigma, const Vector& nu, Vector& values) {
@@ -268,6 +292,7 @@ std::vector<Vector> NonlinearProgram::multipliers(const Vector& y, const Vector&
     result[k].segment(element * dimension, dimension) =
         g_jacobian.transpose() * nu.segment(first, rows) / constraint.weight(element);
   });
+  data_->equalities.put(nu.tail(data_->equalities.count()), data_->constraints.size(), result);
   return result;
 }
 
@@ -282,6 +307,7 @@ Vector NonlinearProgram::row_multipliers(const Vector& y, const std::vector<Vect
     const Matrix transposed = Eigen::Map<const Matrix>(local.g_jacobian.data(), rows, dimension).transpose();
     nu.segment(first, rows) = transposed.completeOrthogonalDecomposition().solve(lambda);
   });
+  nu.tail(data_->equalities.count()) = data_->equalities.stacked(multipliers, data_->constraints.size());
   return nu;
 }
 

@@ -15,7 +15,8 @@ struct TripletPattern {
 
 /// A Problem as a classical smooth nonlinear program in its free variables y, the fixed ones substituted:
 ///   minimise f(y) subject to lower <= g(y) <= upper,
-/// with g the smooth rows (ConvexSet::smooth_values) of each constraint's elements, one constraint after another. Its
+/// with g the smooth rows (ConvexSet::smooth_values) of each constraint's elements, one constraint after another, then
+/// the linear equalities. Its
 /// Lagrangian is f + nu . g, so that nu >= 0 where an upper bound is active and nu <= 0 at a lower one. Patterns are
 /// computed once; values are written into the same places every time.
 class NonlinearProgram {

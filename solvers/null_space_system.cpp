@@ -6,7 +6,7 @@ namespace taut {
 namespace {
 
 /// One row for each fixed variable.
-SparseMatrix equality_rows(const Problem& problem) {
+SparseMatrix pin_rows(const Problem& problem) {
   SparseMatrix rows(static_cast<Index>(problem.fixed_variables.size()), problem.size());
   for (std::size_t i = 0; i < problem.fixed_variables.size(); ++i) {
     rows.insert(static_cast<Index>(i), problem.fixed_variables[i]) = 1;
@@ -15,23 +15,79 @@ SparseMatrix equality_rows(const Problem& problem) {
   return rows;
 }
 
+/// Those of span(basis) that `rows` are zero on.
+SparseMatrix narrowed(const SparseMatrix& basis, const SparseMatrix& rows) {
+  return basis * null_space_basis(rows * basis);
+}
+
+SparseMatrix basis_of(const Problem& problem) {
+  SparseMatrix basis(problem.size(), problem.size());
+  basis.setIdentity();
+  bool whole = true;
+  for (const LinearEqualities* equal : problem.equalities) {
+    basis = whole && equal->null_space.cols() > 0 ? equal->null_space : narrowed(basis, equal->rows);
+    whole = false;
+  }
+  return problem.fixed_variables.empty() ? basis : narrowed(basis, pin_rows(problem));
+}
+
+SparseMatrix without_columns(const SparseMatrix& matrix, const std::vector<int>& columns) {
+  SparseMatrix rest = matrix;
+  for (const int column : columns) {
+    for (SparseMatrix::InnerIterator entry(rest, column); entry; ++entry) entry.valueRef() = 0;
+  }
+  rest.prune([](Index, Index, double value) { return value != 0; });
+  return rest;
+}
+
 }  // namespace
 
-NullSpaceSystem::NullSpaceSystem(const Assembly& assembly, const Problem& problem)
-    : assembly_(assembly), basis_(null_space_basis(equality_rows(problem))) {}
+NullSpaceSystem::NullSpaceSystem(const Assembly& assembly, const EqualityRows& equalities, const Problem& problem)
+    : assembly_(assembly),
+      basis_(basis_of(problem)),
+      rows_(without_columns(equalities.rows(), problem.fixed_variables)) {
+  if (rows_.rows() == 0) return;
+  // The shift lets dependent rows be: their right-hand sides, where they are compatible, stay in the range.
+  SparseMatrix product = rows_ * rows_.transpose();
+  normal_.setShift(1e-14 * product.coeffs().abs().maxCoeff());
+  normal_.compute(product);
+}
 
 bool NullSpaceSystem::factorize(double shift) {
   const SparseMatrix full = assembly_.matrix().selfadjointView<Eigen::Lower>();
   reduced_ = basis_.transpose() * full * basis_;
   if (!analysed_) cholesky_.analyzePattern(reduced_);
   analysed_ = true;
+  shift_ = shift;
   cholesky_.setShift(shift);
   cholesky_.factorize(reduced_);
   return cholesky_.info() == Eigen::Success;
 }
 
-void NullSpaceSystem::solve(const Vector& gradient, Vector& step) {
-  step = -(basis_ * cholesky_.solve(basis_.transpose() * gradient));
+void NullSpaceSystem::solve(const Vector& gradient, const Vector& violation, Vector& step, Vector& multiplier_step) {
+  const auto hessian = assembly_.matrix().selfadjointView<Eigen::Lower>();
+  step.setZero(gradient.size());
+  Vector force = gradient;
+  if (!violation.isZero(0)) {
+    step = -(rows_.transpose() * normal_.solve(violation));
+    force += hessian * step;
+  }
+  const Vector along = basis_ * cholesky_.solve(basis_.transpose() * force);
+  step -= along;
+  multiplier_step.resize(rows_.rows());
+  if (rows_.rows() > 0) multiplier_step = -normal_.solve(rows_ * (force - hessian * along));
+}
+
+NewtonSystem::Size NullSpaceSystem::size() const {
+  if (!analysed_) return {};
+  const SparseMatrix& factor = cholesky_.matrixL().nestedExpression();
+  double flops = 0;
+  for (Index column = 0; column < factor.cols(); ++column) {
+    const auto entries = static_cast<double>(factor.outerIndexPtr()[column + 1] - factor.outerIndexPtr()[column]);
+    flops += entries * entries;
+  }
+  const auto nonzeros = static_cast<double>(factor.nonZeros());
+  return {flops, nonzeros, static_cast<std::size_t>(factor.nonZeros()) * (sizeof(double) + sizeof(int))};
 }
 
 }  // namespace taut

@@ -3,26 +3,31 @@
 #include <Eigen/SparseCholesky>
 
 #include "core/problem.h"
+#include "solvers/equality_rows.h"
 #include "solvers/newton.h"
 
 namespace taut {
 
-/// Newton steps in the null space of linear equalities: x = x0 + Z w with a sparse basis Z (linalg/null_space.h), w
-/// from (Z^T H Z) w = -Z^T g, factorised by Eigen's simplicial Cholesky. It shares neither order nor factorisation nor
-/// the treatment of fixed variables with SubstitutedSystem, which makes it a check of that, not a fast solver: the
-/// product is formed anew in each iteration.
+/// Newton steps in the null space of all equalities, the fixed variables' among them: x = x0 + Z w with a sparse basis
+/// Z, w from (Z^T H Z) w = -Z^T g, factorised by Eigen's simplicial Cholesky. Z is LinearEqualities::null_space where
+/// that is known (for a membrane on a shell the change of variables of [MLTS (37)]), else found by QR
+/// (linalg/null_space.h). It shares neither order nor factorisation nor the treatment of equalities with the other
+/// systems, which makes it a check of them, not a fast solver: the product is formed anew in each iteration.
 class NullSpaceSystem final : public NewtonSystem {
  public:
-  /// The equalities are those that hold the problem's fixed variables. The assembly, which is borrowed, has no fixed
-  /// variables and the natural order.
-  NullSpaceSystem(const Assembly& assembly, const Problem& problem);
+  /// The assembly, which is borrowed, has no fixed variables and the natural order.
+  NullSpaceSystem(const Assembly& assembly, const EqualityRows& equalities, const Problem& problem);
   bool factorize(double shift) override;
-  void solve(const Vector& gradient, Vector& step) override;
+  void solve(const Vector& gradient, const Vector& violation, Vector& step, Vector& multiplier_step) override;
+  Size size() const override;
 
  private:
   const Assembly& assembly_;
   SparseMatrix basis_, reduced_;
+  SparseMatrix rows_;  // the equalities without the columns of fixed variables
   Eigen::SimplicialLLT<SparseMatrix> cholesky_;
+  Eigen::SimplicialLDLT<SparseMatrix> normal_;  // A A^T, for particular solutions and multipliers
+  double shift_ = 0;
   bool analysed_ = false;
 };
 

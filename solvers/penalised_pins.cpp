@@ -86,8 +86,15 @@ Result PenalisedPins::solve(const Problem& problem, const WarmStart& warm, const
   posed.fixed_variables.clear();
   posed.fixed_values.resize(0);
   posed.constraints.push_back(rows_.get());
-  Result result = inner_->solve(posed, warm, budget);
-  result.multipliers.resize(problem.constraints.size());
+  // Those of equalities stand behind those of the rows.
+  const auto own = static_cast<std::ptrdiff_t>(problem.constraints.size());
+  WarmStart start = warm;
+  if (start.multipliers.size() > problem.constraints.size()) {
+    start.multipliers.insert(start.multipliers.begin() + own,
+                             Vector::Zero(static_cast<Index>(problem.fixed_variables.size())));
+  }
+  Result result = inner_->solve(posed, start, budget);
+  result.multipliers.erase(result.multipliers.begin() + own);
   result.penalties.resize(std::min(result.penalties.size(), problem.constraints.size()));
   if (result.status == Status::solved && !residuals(problem, result).within(tolerances_)) {
     result.status = Status::stalled;

@@ -36,6 +36,7 @@ THIRD_PARTY = [
     ("suitesparse/*", ("src/linalg/*.cpp",)),
     ("SuiteSparse*", ("src/linalg/*.cpp",)),
     ("metis.h", ("src/linalg/*.cpp",)),
+    ("dmumps_c.h", ("src/linalg/*.cpp",)),
     ("cblas.h", ("src/linalg/*.cpp",)),
     ("omp.h", ("src/linalg/*.cpp",)),
     ("dlfcn.h", ("src/linalg/*.cpp",)),

@@ -431,6 +431,12 @@ void Assembly::Data::add_hessian(int thread, const Vector& x, Curvature curvatur
   }
 }
 
+void Assembly::clear_fixed(Vector& gradient) const {
+  for (Index i = 0; i < gradient.size(); ++i) {
+    if (data_->fixed[static_cast<std::size_t>(i)]) gradient[i] = 0;
+  }
+}
+
 void Assembly::hessian(const Vector& x, Curvature curvature, Vector* gradient) {
   Data& d = *data_;
   if (gradient) gradient->setZero(d.size);

@@ -43,6 +43,8 @@ class Assembly {
   double value(const Vector& x) const;
   /// Overwrites `gradient` (size() entries; zero at fixed variables) and returns the value.
   double gradient(const Vector& x, Vector& gradient) const;
+  /// Sets the entries of fixed variables to zero, as gradient() does.
+  void clear_fixed(Vector& gradient) const;
   /// Recomputes the values of matrix() at x and, where `gradient` is not null, the gradient as gradient() does, in the
   /// same pass.
   void hessian(const Vector& x, Curvature curvature, Vector* gradient = nullptr);

@@ -34,6 +34,16 @@ void Problem::validate() const {
                                   " (at most " + std::to_string(max_rows) + ")");
     }
   }
+  for (const LinearEqualities* equal : equalities) {
+    const auto expect = [&](const char* what, Index found, Index expected) {
+      if (found == expected) return;
+      throw std::invalid_argument(equal->name + ": " + what + " is " + std::to_string(found) + ", expected " +
+                                  std::to_string(expected));
+    };
+    expect("number of variables", equal->rows.cols(), size());
+    expect("number of values", equal->values.size(), equal->rows.rows());
+    if (equal->null_space.cols() > 0) expect("rows of the null space", equal->null_space.rows(), size());
+  }
   if (fixed_values.size() != static_cast<Index>(fixed_variables.size())) {
     throw std::invalid_argument("Problem: " + std::to_string(fixed_variables.size()) + " fixed variables but " +
                                 std::to_string(fixed_values.size()) + " values");

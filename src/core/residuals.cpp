@@ -34,18 +34,23 @@ void check_sizes(const Problem& problem, const Result& result) {
     throw std::invalid_argument("residuals: result.x has " + std::to_string(result.x.size()) + " entries, expected " +
                                 std::to_string(problem.size()));
   }
-  if (result.multipliers.size() != problem.constraints.size()) {
+  const std::size_t vectors = problem.constraints.size() + problem.equalities.size();
+  if (result.multipliers.size() != vectors) {
     throw std::invalid_argument("residuals: " + std::to_string(result.multipliers.size()) +
-                                " multiplier vectors, expected " + std::to_string(problem.constraints.size()));
+                                " multiplier vectors, expected " + std::to_string(vectors));
   }
+  const auto check_size = [](const std::string& name, const Vector& multipliers, Index expected) {
+    if (multipliers.size() == expected) return;
+    throw std::invalid_argument("residuals: multipliers of " + name + " have " + std::to_string(multipliers.size()) +
+                                " entries, expected " + std::to_string(expected));
+  };
   for (std::size_t k = 0; k < problem.constraints.size(); ++k) {
     const Constraint& constraint = *problem.constraints[k];
-    const Index expected = constraint.stencils().count() * constraint.rows();
-    if (result.multipliers[k].size() != expected) {
-      throw std::invalid_argument("residuals: multipliers of " + constraint.name() + " have " +
-                                  std::to_string(result.multipliers[k].size()) + " entries, expected " +
-                                  std::to_string(expected));
-    }
+    check_size(constraint.name(), result.multipliers[k], constraint.stencils().count() * constraint.rows());
+  }
+  for (std::size_t k = 0; k < problem.equalities.size(); ++k) {
+    const LinearEqualities& equal = *problem.equalities[k];
+    check_size(equal.name, result.multipliers[problem.constraints.size() + k], equal.rows.rows());
   }
 }
 
@@ -108,6 +113,21 @@ void judge(const Constraint& constraint, const Vector& x, const Vector& multipli
   residuals.violations.push_back(violation);
 }
 
+/// Adds A^T nu to `force` and records the violation; any multiplier of an equality is complementary.
+void judge(const LinearEqualities& equal, const Vector& x, const Vector& multipliers, Vector& force,
+           Residuals& residuals) {
+  force += equal.rows.transpose() * multipliers;
+  const Vector off = equal.rows * x - equal.values;
+  Violation violation{equal.name, 0, "", -1};
+  for (Index row = 0; row < off.size(); ++row) {
+    if (raise(violation.max, std::abs(off[row]))) violation.element = row;
+  }
+  if (violation.element >= 0 && equal.row_name) violation.where = equal.row_name(violation.element);
+  raise(residuals.feasibility, violation.max / equal.violation_scale);
+  raise(residuals.feasibility_unscaled, violation.max);
+  residuals.violations.push_back(violation);
+}
+
 }  // namespace
 
 void Tolerances::validate() const {
@@ -137,6 +157,11 @@ Residuals residuals(const Problem& problem, const Result& result) {
   for (std::size_t k = 0; k < problem.constraints.size(); ++k) {
     term.setZero();
     judge(*problem.constraints[k], result.x, result.multipliers[k], term, residuals);
+    add_term();
+  }
+  for (std::size_t k = 0; k < problem.equalities.size(); ++k) {
+    term.setZero();
+    judge(*problem.equalities[k], result.x, result.multipliers[problem.constraints.size() + k], term, residuals);
     add_term();
   }
   if (!problem.fixed_variables.empty()) {

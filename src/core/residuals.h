@@ -35,7 +35,8 @@ struct Residuals {
                                ///< lambda is in the normal cone at p
   double complementarity_unscaled = 0;  ///< the same times s
   std::string worst_node;               ///< index of the node with the largest stationarity residual
-  std::vector<Violation> violations;    ///< one per constraint, and "pins" where variables are fixed
+  std::vector<Violation> violations;    ///< one per constraint, one per system of equalities, and "pins" where
+                                        ///< variables are fixed
   bool finite = true;
 
   bool within(const Tolerances& tolerances) const;

@@ -41,7 +41,8 @@ struct Timings {
   Timings& operator+=(const Timings& other);
 };
 
-/// What a solver returns. `multipliers` has one vector per constraint: element by element, `rows()` entries each.
+/// What a solver returns. `multipliers` has one vector per constraint (element by element, `rows()` entries each), then
+/// one per system of equalities.
 struct Result {
   Status status = Status::iteration_limit;
   Vector x;

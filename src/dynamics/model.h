@@ -7,6 +7,7 @@
 
 #include "core/constraint.h"
 #include "core/energy.h"
+#include "core/linear_equalities.h"
 #include "energies/dead_load.h"
 #include "energies/end_moment.h"
 #include "energies/inertia.h"
@@ -60,8 +61,10 @@ struct Model {
   };
   std::vector<LaggedLoad> lagged_loads;  ///< wind
   std::vector<std::unique_ptr<Constraint>> constraints;
-  std::vector<PinnedVariable> pins;      ///< ascending variables
-  std::vector<std::vector<int>> probed;  ///< the vertices of each of Scene::output.probes
+  std::vector<std::unique_ptr<LinearEqualities>> equalities;  ///< couplings of fine membranes to their shells
+  std::vector<PinnedVariable> pins;                           ///< ascending variables
+  std::vector<std::string> notes;                             ///< what a person should know before trusting the result
+  std::vector<std::vector<int>> probed;                       ///< the vertices of each of Scene::output.probes
   /// Moves the obstacles to where they are at `time`; empty where none move.
   std::vector<std::function<void(double time)>> movers;
 };

@@ -80,6 +80,7 @@ Stepper::Stepper(Model& model, TimeOptions options) : model_(model), options_(op
   problem_.topology = new_topology();
   problem_.energies = energies_of(model_, dynamic());
   for (const auto& constraint : model_.constraints) problem_.constraints.push_back(constraint.get());
+  for (const auto& equal : model_.equalities) problem_.equalities.push_back(equal.get());
   for (const PinnedVariable& pin : model_.pins) problem_.fixed_variables.push_back(pin.variable);
   problem_.fixed_values.resize(static_cast<Index>(model_.pins.size()));
   problem_.initial_guess = model_.positions;

@@ -112,6 +112,7 @@ bool Run::begin() {
   summary_.version = options_.version;
   summary_.machine = machine;
   summary_.threads = threads_;
+  if (!from) summary_.notes = model_->notes;
   seconds_before_ = summary_.seconds.total;
   if (from) {
     before_ = from->before;

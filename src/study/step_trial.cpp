@@ -16,8 +16,12 @@ namespace {
 constexpr int worst_elements_kept = 5;
 
 bool fits(const std::vector<Vector>& multipliers, const Problem& problem) {
-  if (multipliers.size() != problem.constraints.size()) return false;
-  for (std::size_t k = 0; k < multipliers.size(); ++k) {
+  const std::size_t constraints = problem.constraints.size();
+  if (multipliers.size() != constraints + problem.equalities.size()) return false;
+  for (std::size_t k = 0; k < problem.equalities.size(); ++k) {
+    if (multipliers[constraints + k].size() != problem.equalities[k]->rows.rows()) return false;
+  }
+  for (std::size_t k = 0; k < constraints; ++k) {
     const Constraint& constraint = *problem.constraints[k];
     if (multipliers[k].size() != constraint.stencils().count() * constraint.rows()) return false;
   }
@@ -47,7 +51,7 @@ std::string StepTrials::choose_warm_start(const Problem& problem, WarmStart& war
   if (options_.cold) return "none";
   if (fits(given.multipliers, problem)) {
     warm = given;
-    return problem.constraints.empty() ? "none" : "state";
+    return given.multipliers.empty() ? "none" : "state";
   }
   if (!latest_solved_ || !fits(latest_.multipliers, problem)) return "none";
   warm = {latest_.multipliers, latest_.penalties};

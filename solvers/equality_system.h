@@ -1,0 +1,79 @@
+#pragma once
+
+#include <memory>
+
+#include "linalg/symmetric_indefinite.h"
+#include "solvers/equality_rows.h"
+#include "solvers/newton.h"
+
+namespace taut {
+
+/// Newton steps with linear equalities, H dx + A^T dnu = -gradient, A dx = -violation, fixed variables substituted. A
+/// subclass solves this with -1/mu in the lower right corner, which is the augmented Lagrangian's step [H A^T; A -1/mu]
+/// with a penalty mu on each row. Refinement takes the effect of 1/mu away: each round is an update of the multipliers
+/// nu, and the equalities hold to round-off.
+class EqualitySystem : public NewtonSystem {
+ public:
+  bool factorize(double shift) final;
+  void solve(const Vector& gradient, const Vector& violation, Vector& step, Vector& multiplier_step) final;
+
+ protected:
+  /// All is borrowed. The assembly is in its final order, which QuasiDefiniteSystem wants to be the natural one.
+  EqualitySystem(const Assembly& assembly, const EqualityRows& equalities, const std::vector<int>& fixed);
+
+  const Assembly& assembly() const { return assembly_; }
+  /// A with columns in the assembly's order, those of fixed variables zero.
+  const SparseMatrix& rows() const { return rows_; }
+  /// mu of each row: 1e8 times the stiffness against it that the diagonal of H tells.
+  const Vector& penalties() const { return penalties_; }
+
+  virtual bool factorize_penalised(double shift) = 0;
+  /// Replaces right-hand sides of the system with -1/mu by its solution.
+  virtual void solve_penalised(Vector& step, Vector& multipliers) = 0;
+
+ private:
+  void find_penalties(double shift);
+
+  const Assembly& assembly_;
+  SparseMatrix rows_;
+  double shift_ = 0;
+  Vector penalties_, top_, bottom_, dx_, dnu_, part_, part_nu_, ordered_;
+};
+
+/// The system as it stands, factorised by MUMPS. Its negative pivots are counted: as many as rows, or H is not positive
+/// definite where A dx = 0.
+class QuasiDefiniteSystem final : public EqualitySystem {
+ public:
+  QuasiDefiniteSystem(const Assembly& assembly, const EqualityRows& equalities, const std::vector<int>& fixed);
+  Size size() const override { return {factor_->factor_flops(), factor_->factor_nonzeros(), factor_->memory_bytes()}; }
+
+ private:
+  bool factorize_penalised(double shift) override;
+  void solve_penalised(Vector& step, Vector& multipliers) override;
+
+  std::vector<Index> slots_;  // entries of the assembled matrix in the lower triangle
+  std::vector<Index> diagonal_;
+  Vector scales_, values_, right_hand_side_;
+  std::unique_ptr<SymmetricIndefinite> factor_;
+};
+
+/// The multipliers eliminated, H + sum mu a a^T, factorised by CHOLMOD: every row couples all of its variables with
+/// each other. It is here to be compared.
+class PenalisedRowsSystem final : public EqualitySystem {
+ public:
+  /// The order of the assembly is set to one that fits.
+  PenalisedRowsSystem(Assembly& assembly, const EqualityRows& equalities, const std::vector<int>& fixed, int threads);
+  Size size() const override {
+    return {cholesky_->factor_flops(), cholesky_->factor_nonzeros(), cholesky_->memory_bytes()};
+  }
+
+ private:
+  bool factorize_penalised(double shift) override;
+  void solve_penalised(Vector& step, Vector& multipliers) override;
+
+  SparseMatrix sum_;
+  Vector right_hand_side_;
+  std::unique_ptr<Cholesky> cholesky_;
+};
+
+}  // namespace taut
