@@ -291,16 +291,17 @@ bool AugmentedLagrangian::Run::central_path() {
       options.tolerances.stationarity * judged.force_scale, options.central_path, options.threads, x, equal,
       [&](const Vector& candidate) {
         result.x = candidate;
+        const Judge judge(problem, result.x);
         // Projected multipliers vanish where a constraint is not active; the path's own are positive everywhere, but
         // where many are weak their forces balance better, so they come second, without those that are negligible.
         for (std::size_t k = 0; k < work.slacks.size(); ++k) {
           work.slacks[k].updated_multipliers(candidate, std::numeric_limits<double>::infinity(), result.multipliers[k]);
         }
         work.equalities.put(equal, work.slacks.size(), result.multipliers);
-        judged = residuals(problem, result);
+        judged = judge(result.multipliers);
         if (judged.within(options.tolerances)) return merit(judged);
         for (std::size_t k = 0; k < work.slacks.size(); ++k) keep_significant(work.slacks[k], result.multipliers[k]);
-        judged = residuals(problem, result);
+        judged = judge(result.multipliers);
         return merit(judged);
       },
       budget, result.counts, result.timings);

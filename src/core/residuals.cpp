@@ -29,28 +29,24 @@ NodalMax nodal_max(const Vector& force, int node_size) {
   return worst;
 }
 
-void check_sizes(const Problem& problem, const Result& result) {
-  if (result.x.size() != problem.size()) {
-    throw std::invalid_argument("residuals: result.x has " + std::to_string(result.x.size()) + " entries, expected " +
-                                std::to_string(problem.size()));
-  }
+void check_multipliers(const Problem& problem, const std::vector<Vector>& multipliers) {
   const std::size_t vectors = problem.constraints.size() + problem.equalities.size();
-  if (result.multipliers.size() != vectors) {
-    throw std::invalid_argument("residuals: " + std::to_string(result.multipliers.size()) +
-                                " multiplier vectors, expected " + std::to_string(vectors));
+  if (multipliers.size() != vectors) {
+    throw std::invalid_argument("residuals: " + std::to_string(multipliers.size()) + " multiplier vectors, expected " +
+                                std::to_string(vectors));
   }
-  const auto check_size = [](const std::string& name, const Vector& multipliers, Index expected) {
-    if (multipliers.size() == expected) return;
-    throw std::invalid_argument("residuals: multipliers of " + name + " have " + std::to_string(multipliers.size()) +
+  const auto check_size = [](const std::string& name, const Vector& one, Index expected) {
+    if (one.size() == expected) return;
+    throw std::invalid_argument("residuals: multipliers of " + name + " have " + std::to_string(one.size()) +
                                 " entries, expected " + std::to_string(expected));
   };
   for (std::size_t k = 0; k < problem.constraints.size(); ++k) {
     const Constraint& constraint = *problem.constraints[k];
-    check_size(constraint.name(), result.multipliers[k], constraint.stencils().count() * constraint.rows());
+    check_size(constraint.name(), multipliers[k], constraint.stencils().count() * constraint.rows());
   }
   for (std::size_t k = 0; k < problem.equalities.size(); ++k) {
     const LinearEqualities& equal = *problem.equalities[k];
-    check_size(equal.name, result.multipliers[problem.constraints.size() + k], equal.rows.rows());
+    check_size(equal.name, multipliers[problem.constraints.size() + k], equal.rows.rows());
   }
 }
 
@@ -94,7 +90,7 @@ void judge(const Constraint& constraint, const Vector& x, const Vector& multipli
       force[stencils[element][i]] += constraint.weight(element) * sum;
     }
     if (raise(violation.max, constraint.violation(element, local.data()))) violation.element = element;
-    if (scale > 0) {
+    if (!std::all_of(lambda, lambda + rows, [](double entry) { return entry == 0; })) {
       // From the nearest point of K, not from c: outside K a multiplier of the wrong sign could otherwise go unseen.
       constraint.set().project(element, c.data(), nearest.data(), nullptr);
       for (int row = 0; row < rows; ++row) moved[row] = nearest[row] + lambda[row] / scale;
@@ -141,54 +137,69 @@ bool Residuals::within(const Tolerances& tolerances) const {
          complementarity <= tolerances.complementarity;
 }
 
-Residuals residuals(const Problem& problem, const Result& result) {
-  check_sizes(problem, result);
-  Residuals residuals;
-  Vector total = Vector::Zero(problem.size()), term(problem.size());
-  const auto add_term = [&] {
-    raise(residuals.force_scale, nodal_max(term, problem.node_size).norm);
-    total += term;
-  };
+Judge::Judge(const Problem& problem, const Vector& x)
+    : problem_(problem), x_(x), energies_force_(Vector::Zero(problem.size())) {
+  if (x.size() != problem.size()) {
+    throw std::invalid_argument("residuals: result.x has " + std::to_string(x.size()) + " entries, expected " +
+                                std::to_string(problem.size()));
+  }
+  Vector term(problem.size());
   for (const Energy* energy : problem.energies) {
     term.setZero();
-    residuals.finite = add_gradient(*energy, result.x, term) && residuals.finite;
-    add_term();
+    finite_ = add_gradient(*energy, x, term) && finite_;
+    raise(force_scale_, nodal_max(term, problem.node_size).norm);
+    energies_force_ += term;
   }
-  for (std::size_t k = 0; k < problem.constraints.size(); ++k) {
+}
+
+Residuals Judge::operator()(const std::vector<Vector>& multipliers) const {
+  check_multipliers(problem_, multipliers);
+  Residuals residuals;
+  residuals.finite = finite_;
+  residuals.force_scale = force_scale_;
+  Vector total = energies_force_, term(problem_.size());
+  const auto add_term = [&] {
+    raise(residuals.force_scale, nodal_max(term, problem_.node_size).norm);
+    total += term;
+  };
+  for (std::size_t k = 0; k < problem_.constraints.size(); ++k) {
     term.setZero();
-    judge(*problem.constraints[k], result.x, result.multipliers[k], term, residuals);
+    judge(*problem_.constraints[k], x_, multipliers[k], term, residuals);
     add_term();
   }
-  for (std::size_t k = 0; k < problem.equalities.size(); ++k) {
+  for (std::size_t k = 0; k < problem_.equalities.size(); ++k) {
     term.setZero();
-    judge(*problem.equalities[k], result.x, result.multipliers[problem.constraints.size() + k], term, residuals);
+    judge(*problem_.equalities[k], x_, multipliers[problem_.constraints.size() + k], term, residuals);
     add_term();
   }
-  if (!problem.fixed_variables.empty()) {
+  if (!problem_.fixed_variables.empty()) {
     Violation pins{"pins", 0, "", -1};
     term.setZero();
-    for (std::size_t i = 0; i < problem.fixed_variables.size(); ++i) {
-      const int variable = problem.fixed_variables[i];
+    for (std::size_t i = 0; i < problem_.fixed_variables.size(); ++i) {
+      const int variable = problem_.fixed_variables[i];
       term[variable] = -total[variable];
-      const double off = std::abs(result.x[variable] - problem.fixed_values[static_cast<Index>(i)]);
-      if (raise(pins.max, off)) pins.element = variable / problem.node_size;
+      const double off = std::abs(x_[variable] - problem_.fixed_values[static_cast<Index>(i)]);
+      if (raise(pins.max, off)) pins.element = variable / problem_.node_size;
     }
     if (pins.element >= 0) pins.where = "vertex " + std::to_string(pins.element);
     // Pins are met to the last bit by substitution; any distance at all is measured against the size of the values.
-    const double size = std::max(problem.fixed_values.lpNorm<Eigen::Infinity>(), 1e-300);
+    const double size = std::max(problem_.fixed_values.lpNorm<Eigen::Infinity>(), 1e-300);
     raise(residuals.feasibility, pins.max / size);
     raise(residuals.feasibility_unscaled, pins.max);
     residuals.violations.push_back(pins);
     add_term();
   }
-  const NodalMax worst = nodal_max(total, problem.node_size);
+  const NodalMax worst = nodal_max(total, problem_.node_size);
   residuals.stationarity_unscaled = worst.norm;
   residuals.worst_node = worst.node < 0 ? "" : "vertex " + std::to_string(worst.node);
   residuals.stationarity = worst.norm == 0 ? 0.0 : worst.norm / residuals.force_scale;
-  residuals.finite = residuals.finite && total.allFinite() && result.x.allFinite() &&
-                     std::isfinite(residuals.feasibility) && std::isfinite(residuals.complementarity) &&
-                     std::isfinite(residuals.force_scale);
+  residuals.finite = residuals.finite && total.allFinite() && x_.allFinite() && std::isfinite(residuals.feasibility) &&
+                     std::isfinite(residuals.complementarity) && std::isfinite(residuals.force_scale);
   return residuals;
+}
+
+Residuals residuals(const Problem& problem, const Result& result) {
+  return Judge(problem, result.x)(result.multipliers);
 }
 
 }  // namespace taut

@@ -42,6 +42,23 @@ struct Residuals {
   bool within(const Tolerances& tolerances) const;
 };
 
+/// Judges any number of multipliers at one point, where the forces of the energies are computed once. Both arguments
+/// are borrowed.
+class Judge {
+ public:
+  /// Throws std::invalid_argument where x does not fit the problem.
+  Judge(const Problem& problem, const Vector& x);
+  /// One vector per constraint, then one per set of equalities; throws std::invalid_argument where sizes do not fit.
+  Residuals operator()(const std::vector<Vector>& multipliers) const;
+
+ private:
+  const Problem& problem_;
+  const Vector& x_;
+  Vector energies_force_;
+  double force_scale_ = 0;
+  bool finite_ = true;
+};
+
 /// Throws std::invalid_argument where the result's sizes do not fit the problem.
 Residuals residuals(const Problem& problem, const Result& result);
 
