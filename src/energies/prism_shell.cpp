@@ -89,6 +89,12 @@ PrismShell::PrismShell(std::string name, const std::vector<RestPrism>& prisms, c
     : name_(std::move(name)), material_(material), options_(options) {
   options_.validate();
   if (options_.element == PrismElement::plain) options_.enhanced_thickness = false;
+  std::vector<Place> places;
+  for (const TrianglePoint& in_plane : triangle_rule(options_.points_in_plane)) {
+    for (const LinePoint& line : gauss_rule(options_.points_in_thickness))
+      places.push_back(place_at(in_plane.l, line.gamma, in_plane.weight * line.weight));
+  }
+  std::vector<Point> points(places.size());
   for (const RestPrism& prism : prisms) {
     const PrismShape shape(prism.points);
     if (!(PrismJacobian(shape).smallest() > 0)) {
@@ -96,11 +102,7 @@ PrismShell::PrismShell(std::string name, const std::vector<RestPrism>& prisms, c
                                   std::to_string(rest_.size()));
     }
     kinematics_.emplace_back(shape, prism.direction, options_.element, shear_factor(shape, options_));
-    std::vector<Point> points;
-    for (const TrianglePoint& in_plane : triangle_rule(options_.points_in_plane)) {
-      const std::vector<Point> column = column_at(kinematics_.back(), in_plane.l, in_plane.weight);
-      points.insert(points.end(), column.begin(), column.end());
-    }
+    for (std::size_t q = 0; q < places.size(); ++q) points[q] = point_at(kinematics_.back(), places[q]);
     stencils_.add_vertices(prism.nodes);
     rest_.push_back(kinematics_.back().rest_gram());
     scale_.emplace_back(2 * rest_.back()[gram_pair(0, 0)], 2 * rest_.back()[gram_pair(1, 1)],
@@ -113,12 +115,12 @@ PrismShell::PrismShell(std::string name, const std::vector<RestPrism>& prisms, c
   }
 }
 
-PrismShell::Point PrismShell::point_at(const PrismKinematics& kinematics, const Vector3& l, double gamma,
-                                       double weight) const {
+PrismShell::Point PrismShell::point_at(const PrismKinematics& kinematics, const Place& place) const {
+  const auto& [l, gamma, weight, covariant] = place;
   const double middle = kinematics.jacobian(l, 0).determinant(), here = kinematics.jacobian(l, gamma).determinant();
   // Weighted so that constant stresses do no work on it: the patch test (Simo and Rifai 1990).
   const double enhancement = options_.enhanced_thickness ? gamma * middle / here : 0.0;
-  return {kinematics.strain(l, gamma), weight * here, enhancement};
+  return {kinematics.strain(covariant, l, gamma), weight * here, enhancement};
 }
 
 std::vector<PrismShell::Point> PrismShell::column_at(const PrismKinematics& kinematics, const Vector3& l,
@@ -126,7 +128,7 @@ std::vector<PrismShell::Point> PrismShell::column_at(const PrismKinematics& kine
   std::vector<Point> column;
   column.reserve(static_cast<std::size_t>(options_.points_in_thickness));
   for (const LinePoint& line : gauss_rule(options_.points_in_thickness)) {
-    column.push_back(point_at(kinematics, l, line.gamma, weight * line.weight));
+    column.push_back(point_at(kinematics, place_at(l, line.gamma, weight * line.weight)));
   }
   return column;
 }
@@ -159,7 +161,7 @@ double PrismShell::enhanced_strain(const Point* column, const Voigt* strains) co
 PrismState PrismShell::state(Index element, const double* x, const Vector3& l, double gamma) const {
   const PrismKinematics& kinematics = kinematics_[element];
   const GramStrain gram_strain = gram(prism_vectors(x)) - rest_[element];
-  const Point here = point_at(kinematics, l, gamma, 1.0);
+  const Point here = point_at(kinematics, place_at(l, gamma, 1.0));
   PrismState state{kinematics.frame(), here.strain.transpose() * gram_strain, Voigt::Zero()};
   if (options_.enhanced_thickness) {
     const std::vector<Point> column = column_at(kinematics, l, 1.0);
@@ -185,13 +187,14 @@ GramStiffness PrismShell::constant_stiffness(const Point* points) const {
     GramStrain coupling = GramStrain::Zero();
     double enhanced = 0;
     for (int g = 0; g < options_.points_in_thickness; ++g, ++points) {
-      const StrainMatrix stress = points->volume * points->strain * material_.elasticity;
-      total += points->strain * stress.transpose();
+      // Lazy products: Eigen's blocked ones cost several times as much on matrices this small.
+      const StrainMatrix stress = points->volume * points->strain.lazyProduct(material_.elasticity);
+      total += points->strain.lazyProduct(stress.transpose());
       coupling += points->enhancement * stress.col(thickness_axis);
       enhanced += points->volume * points->enhancement * points->enhancement *
                   material_.elasticity(thickness_axis, thickness_axis);
     }
-    if (enhanced > 0) total -= coupling * coupling.transpose() / enhanced;
+    if (enhanced > 0) total -= coupling.lazyProduct(coupling.transpose() / enhanced);
   }
   return 0.5 * (total + total.transpose());
 }
@@ -232,7 +235,7 @@ double PrismShell::evaluate(Index element, const double* x, double* gradient, do
   const GramStrain strain = gram(v) - rest_[element];
   if (material_.law == SolidLaw::stvk) {
     const GramStiffness& stiffness = stiffness_[element];
-    const GramStrain force = stiffness * strain;
+    const GramStrain force = stiffness.lazyProduct(strain);
     if (gradient) prism_gradient(v, force, gradient);
     if (hessian) prism_hessian(v, force, stiffness, scale_[element], curvature, hessian);
     return 0.5 * strain.dot(force);

@@ -82,7 +82,17 @@ class PrismShell final : public Energy {
   };
   enum class Wanted { value, force, stiffness };
 
-  Point point_at(const PrismKinematics& kinematics, const Vector3& l, double gamma, double weight) const;
+  /// Where a point is, and what all prisms have in common there.
+  struct Place {
+    Vector3 l;
+    double gamma, weight;
+    StrainMatrix covariant;
+  };
+
+  Place place_at(const Vector3& l, double gamma, double weight) const {
+    return {l, gamma, weight, covariant_strain(options_.element, l, gamma)};
+  }
+  Point point_at(const PrismKinematics& kinematics, const Place& place) const;
   std::vector<Point> column_at(const PrismKinematics& kinematics, const Vector3& l, double weight) const;
   /// The alpha of a column whose strains without it are `strains`.
   double enhanced_strain(const Point* column, const Voigt* strains) const;
