@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "problems/shell_from_json.h"
@@ -30,7 +32,8 @@ class SceneReader : public ShellReader {
     for (const auto& [name, value] : json["constraints"].items()) result.constraints.push_back(constraint(name, value));
     for (const auto& [name, value] : json["loads"].items()) result.loads.push_back(load(name, value));
     result.solver = solver(json["solver"]);
-    result.output = output(json["output"]);
+    result.output = output(json["output"], result.time);
+    check_frequencies(result);
     return result;
   }
 
@@ -46,6 +49,7 @@ class SceneReader : public ShellReader {
     result.steps = json["steps"];
     result.spectral_radius = json["spectral_radius"];
     result.halvings = json["halvings"];
+    result.frequencies = json["frequencies"];
     if (result.integrator == Integrator::quasi_static) {
       result.step = 1.0 / result.steps;
     } else if (json.contains("step")) {
@@ -54,6 +58,17 @@ class SceneReader : public ShellReader {
       missing("/time/step", "a number > 0, in s (only \"static\" goes without)");
     }
     return result;
+  }
+
+  void check_frequencies(const Scene& scene) const {
+    if (scene.time.frequencies == 0) return;
+    if (scene.time.integrator != Integrator::quasi_static)
+      refuse("/time/frequencies", std::to_string(scene.time.frequencies), "0 unless the integrator is \"static\"");
+    for (const scene::Constraint& constraint : scene.constraints) {
+      if (!std::holds_alternative<Pin>(constraint.kind))
+        refuse("/time/frequencies", std::to_string(scene.time.frequencies),
+               "0 where a constraint is not a pin (" + constraint.name + ")");
+    }
   }
 
   Body body(const std::string& name, const Json& json) const {
@@ -236,7 +251,7 @@ class SceneReader : public ShellReader {
       result.kind =
           EdgeLoad{selection(json["select"], result.body, pointer + "/select"), vector(json["force_per_length"])};
     } else if (type == "pressure") {
-      result.kind = Pressure{json["pressure"]};
+      result.kind = Pressure{json["pressure"], json["follows"]};
     } else if (type == "surface_load") {
       result.kind = surface_load(json);
     } else if (type == "end_moment") {
@@ -260,7 +275,7 @@ class SceneReader : public ShellReader {
     return {selection(json["select"], body, pointer + "/select"), vector(json["moment_per_length"])};
   }
 
-  Probe probe(const std::string& name, const Json& json) const {
+  Probe probe(const std::string& name, const Json& json, const Time& time) const {
     const std::string pointer = "/output/probes/" + name;
     Probe result;
     result.name = name;
@@ -269,10 +284,25 @@ class SceneReader : public ShellReader {
       result.body = body_index(json, pointer);
     else if (bodies_->size() > 1)
       missing(pointer + "/body", "the name of a body, as there are several");
+    const bool of_layer = quantity.starts_with("stress_") || quantity.starts_with("stretch_");
+    const auto none_of = [&](std::initializer_list<const char*> keys) {
+      for (const char* key : keys)
+        if (json.contains(key)) refuse(pointer + "/" + key, json[key].dump(), "none of it for \"" + quantity + "\"");
+    };
+    if (!of_layer) none_of({"layer"});
+    if (quantity != "frequency") none_of({"mode"});
     if (quantity == "energy") {
-      for (const char* key : {"select", "surface"})
-        if (json.contains(key)) refuse(pointer + "/" + key, json[key].dump(), "none of it for \"energy\"");
+      none_of({"select", "surface"});
       result.quantity = Quantity::energy;
+    } else if (quantity == "frequency") {
+      none_of({"select", "surface"});
+      result.quantity = Quantity::frequency;
+      result.mode = json.value("mode", 1);
+      if (result.mode > time.frequencies)
+        refuse(pointer + "/mode", std::to_string(result.mode),
+               "at most time.frequencies, which is " + std::to_string(time.frequencies));
+    } else if (of_layer || is_resultant(quantity)) {
+      shell_probe(quantity, json, pointer, result);
     } else {
       if (!json.contains("select")) missing(pointer + "/select", "a selection");
       result.select = selection(json["select"], result.body, pointer + "/select");
@@ -287,6 +317,40 @@ class SceneReader : public ShellReader {
     result.factor = json["factor"];
     if (json.contains("expected")) result.expected = expected(json["expected"], pointer + "/expected");
     return result;
+  }
+
+  static constexpr std::array resultants{"n11", "n22", "n12", "m11", "m22", "m12", "q1", "q2"};
+  static constexpr std::array stresses{"stress_11", "stress_22", "stress_33", "stress_12", "stress_13", "stress_23"};
+
+  static bool is_resultant(const std::string& quantity) {
+    return std::find(resultants.begin(), resultants.end(), quantity) != resultants.end();
+  }
+
+  /// A stress resultant, a stress or a stretch.
+  void shell_probe(const std::string& quantity, const Json& json, const std::string& pointer, Probe& result) const {
+    const Body& on = (*bodies_)[static_cast<std::size_t>(result.body)];
+    if (!on.shell)
+      refuse(pointer + "/quantity", "\"" + quantity + "\" of " + on.name + ", which is cloth",
+             "it of thick shells only");
+    if (!json.contains("select")) missing(pointer + "/select", "a selection");
+    result.select = selection(json["select"], result.body, pointer + "/select");
+    if (is_resultant(quantity)) {
+      if (json.contains("surface"))
+        refuse(pointer + "/surface", json["surface"].dump(), "none of it for \"" + quantity + "\"");
+      result.quantity = Quantity::resultant;
+      result.axis = static_cast<int>(std::find(resultants.begin(), resultants.end(), quantity) - resultants.begin());
+      return;
+    }
+    result.quantity = quantity.starts_with("stretch_") ? Quantity::stretch : Quantity::stress;
+    result.axis = result.quantity == Quantity::stretch
+                      ? quantity.back() - '1'
+                      : static_cast<int>(std::find(stresses.begin(), stresses.end(), quantity) - stresses.begin());
+    result.layer = json.value("layer", 0);
+    if (result.layer >= static_cast<int>(on.shell->layers.size()))
+      refuse(pointer + "/layer", std::to_string(result.layer),
+             "less than the number of layers, " + std::to_string(on.shell->layers.size()));
+    result.surface = surface(json, on, pointer, Surface::top, true);
+    if (result.surface == Surface::both) refuse(pointer + "/surface", "\"both\"", "bottom, top, mid");
   }
 
   Expected expected(const Json& json, const std::string& pointer) const {
@@ -328,14 +392,15 @@ class SceneReader : public ShellReader {
     return result;
   }
 
-  Output output(const Json& json) const {
+  Output output(const Json& json, const Time& time) const {
     Output result;
     result.format = choose<FrameFormat>(
         json["format"], {{"vtu", FrameFormat::vtu}, {"obj", FrameFormat::obj}, {"none", FrameFormat::none}});
     result.every = json["every"];
+    result.stresses = json["stresses"];
     result.pictures = json["pictures"];
     if (json.contains("view")) result.view = direction(json["view"], "/output/view");
-    for (const auto& [name, value] : json["probes"].items()) result.probes.push_back(probe(name, value));
+    for (const auto& [name, value] : json["probes"].items()) result.probes.push_back(probe(name, value, time));
     return result;
   }
 };
