@@ -3,12 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 
 #include "problems/read_scene.h"
 #include "study/check.h"
+#include "study/frame_files.h"
 #include "study/records_json.h"
 #include "study/run.h"
 #include "tests/files/temporary_folder.h"
@@ -183,6 +185,78 @@ TEST_F(LoadParts, StopWhereTheSmallestPartIsNotSolved) {
   const RunSummary summary = solve(scene);
   EXPECT_EQ(summary.status, Status::limit_point);
   EXPECT_THAT(summary.message, HasSubstr("the load stops at 0 of the whole, a larger one is not solved"));
+}
+
+class ShellProbes : public Probes {
+ protected:
+  /// A cantilever of 10 m x 1 m x 0.1 m, EI = 1, under a small force at its end.
+  Scene cantilever(const Overrides& overrides = {}) const {
+    std::ofstream(path("strip.json")) << R"({
+      "format": 1, "time": {"integrator": "static", "steps": 1, "frequencies": 2},
+      "bodies": {"s": {"model": "thick_shell", "mesh": {"grid": {"size": [10, 1], "cells": [20, 1]}}, "mass": "consistent",
+        "thickness": 0.1, "density": 1, "material": {"law": "stvk", "young_modulus": 12000, "poisson_ratio": 0}}},
+      "constraints": {
+        "end": {"type": "pin", "body": "s", "select": {"edges": ["x0"]}},
+        "plane": {"type": "pin", "body": "s", "select": {"all": true}, "axes": "y"}},
+      "loads": {"f": {"type": "edge_load", "body": "s", "select": {"edges": ["x1"]}, "force_per_length": [0, 0, 1e-6]}},
+      "solver": {"tolerance": {"stationarity": 1e-8}},
+      "output": {"stresses": true, "probes": {
+        "m": {"quantity": "m11", "select": {"edges": ["x0"]}}, "q": {"quantity": "q1", "select": {"edges": ["x0"]}},
+        "n": {"quantity": "n11", "select": {"edges": ["x0"]}},
+        "low": {"quantity": "stress_11", "select": {"edges": ["x0"]}, "surface": "bottom"},
+        "high": {"quantity": "stress_11", "select": {"edges": ["x0"]}},
+        "long": {"quantity": "stretch_1", "select": {"edges": ["x0"]}, "surface": "bottom"},
+        "f1": {"quantity": "frequency"}, "f2": {"quantity": "frequency", "mode": 2}}}})";
+    return read_scene(path("strip.json"), overrides);
+  }
+};
+
+TEST_F(ShellProbes, AreTheResultantsThatStaticsAsks) {
+  const RunSummary summary = solve(cantilever());
+  ASSERT_EQ(summary.status, Status::solved) << summary.message;
+  // In the middle of the first cell; the end is lifted, so that the bottom is stretched.
+  const double moment = -1e-6 * (10 - 0.25);
+  EXPECT_NEAR(value(summary, "m"), moment, 2e-3 * std::abs(moment));
+  EXPECT_NEAR(value(summary, "q"), 1e-6, 2e-8);
+  EXPECT_NEAR(value(summary, "n"), 0, 1e-8);
+  EXPECT_NEAR(value(summary, "low"), -6 * moment / 0.01, 2e-3 * std::abs(6 * moment / 0.01));
+  EXPECT_NEAR(value(summary, "high"), 6 * moment / 0.01, 2e-3 * std::abs(6 * moment / 0.01));
+  EXPECT_NEAR(value(summary, "long") - 1, -6 * moment / 0.01 / 12000, 2e-3 * std::abs(6 * moment / 0.01 / 12000));
+}
+
+TEST_F(ShellProbes, HaveNaturalFrequenciesAfterTheLastStep) {
+  const RunSummary summary = solve(cantilever());
+  const double unit = std::sqrt(1 / 0.1) / (2 * M_PI * 100);
+  EXPECT_NEAR(value(summary, "f1"), 3.5158 * unit, 0.01 * 3.5158 * unit);
+  EXPECT_NEAR(value(summary, "f2"), 22.024 * unit, 0.01 * 22.024 * unit);
+  ASSERT_EQ(summary.modes.size(), 2u);
+  EXPECT_LE(summary.modes[1].residual, 1e-8);
+  EXPECT_THAT(summary.files, Contains("modes/strip_mode_00002.vtu"));
+  const CheckReport report = check_run(path("out"), {});
+  EXPECT_EQ(report.verdict(), CheckVerdict::within) << testing::PrintToString(report.findings);
+}
+
+TEST_F(ShellProbes, StallWhereThereAreFewerModesThanAreAskedFor) {
+  const RunSummary summary = solve(cantilever({{"time.frequencies", "1000"}}));
+  EXPECT_EQ(summary.status, Status::stalled);
+  EXPECT_THAT(summary.message, HasSubstr("expected a count from 1 to"));
+}
+
+TEST_F(ShellProbes, WriteTheSameResultantsToFrames) {
+  const RunSummary summary = solve(cantilever());
+  const Frame frame = read_frame(path("out/frames/strip_00001.vtu"));
+  const auto field = [&](const std::string& name) {
+    const auto found = std::find_if(frame.cell_fields.begin(), frame.cell_fields.end(),
+                                    [&](const Field& f) { return f.name == name; });
+    return found == frame.cell_fields.end() ? Field{} : *found;
+  };
+  ASSERT_EQ(field("M").values.size(), 3 * 80u);
+  // The two triangles of the first cell are the only ones that touch the clamped edge.
+  EXPECT_NEAR((field("M").values[0] + field("M").values[3]) / 2, value(summary, "m"), 1e-12);
+  EXPECT_EQ(field("M").values[0], field("M").values[3 * 40]);  // the same on the top
+  EXPECT_NEAR((field("stress_0").values[0] + field("stress_0").values[6]) / 2, value(summary, "low"), 1e-10);
+  EXPECT_EQ(field("Q").components, 2);
+  EXPECT_EQ(field("stretches_0").components, 3);
 }
 
 }  // namespace
