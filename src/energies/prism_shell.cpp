@@ -95,6 +95,13 @@ PrismShell::PrismShell(std::string name, const std::vector<RestPrism>& prisms, c
       places.push_back(place_at(in_plane.l, line.gamma, in_plane.weight * line.weight));
   }
   std::vector<Point> points(places.size());
+  kinematics_.reserve(prisms.size());
+  rest_.reserve(prisms.size());
+  scale_.reserve(prisms.size());
+  if (material_.law == SolidLaw::stvk)
+    stiffness_.reserve(prisms.size());
+  else
+    points_.reserve(prisms.size() * places.size());
   for (const RestPrism& prism : prisms) {
     const PrismShape shape(prism.points);
     if (!(PrismJacobian(shape).smallest() > 0)) {

@@ -35,6 +35,7 @@ ShellSection::ShellSection(std::vector<Layer> layers, const std::vector<Prism>& 
   for (const Layer& layer : layers_) {
     for (int p = 0; p < layer.prisms; ++p) levels_.push_back({layer.energy, p * triangles});
   }
+  shapes_.reserve(prisms.size());
   for (const Prism& prism : prisms) shapes_.emplace_back(points_of(prism, nodes));
   for (int t = 0; t < triangles; ++t) {
     const Prism &bottom = prisms[t], &top = prisms[static_cast<std::size_t>((levels - 1) * triangles + t)];
