@@ -115,7 +115,7 @@ PrismShell::PrismShell(std::string name, const std::vector<RestPrism>& prisms, c
     scale_.emplace_back(2 * rest_.back()[gram_pair(0, 0)], 2 * rest_.back()[gram_pair(1, 1)],
                         shape.director.squaredNorm() / 3);
     if (material_.law == SolidLaw::stvk) {
-      stiffness_.push_back(constant_stiffness(points.data()));
+      stiffness_.push_back(packed(constant_stiffness(points.data())));
     } else {
       points_.insert(points_.end(), points.begin(), points.end());
     }
@@ -206,6 +206,41 @@ GramStiffness PrismShell::constant_stiffness(const Point* points) const {
   return 0.5 * (total + total.transpose());
 }
 
+PrismShell::PackedStiffness PrismShell::packed(const GramStiffness& stiffness) {
+  PackedStiffness blocks;
+  double* at = blocks.data();
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j <= i; ++j, at += 16) Eigen::Matrix4d::Map(at) = stiffness.block<4, 4>(4 * i, 4 * j);
+  }
+  return blocks;
+}
+
+GramStiffness PrismShell::unpacked(const PackedStiffness& stiffness) {
+  GramStiffness full;
+  const double* at = stiffness.data();
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j <= i; ++j, at += 16) {
+      const Eigen::Map<const Eigen::Matrix4d> block(at);
+      full.block<4, 4>(4 * i, 4 * j) = block;
+      if (j < i) full.block<4, 4>(4 * j, 4 * i) = block.transpose();
+    }
+  }
+  return full;
+}
+
+GramStrain PrismShell::product(const PackedStiffness& stiffness, const GramStrain& strain) {
+  GramStrain force = GramStrain::Zero();
+  const double* at = stiffness.data();
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j <= i; ++j, at += 16) {
+      const Eigen::Map<const Eigen::Matrix4d> block(at);
+      force.segment<4>(4 * i) += block.lazyProduct(strain.segment<4>(4 * j));
+      if (j < i) force.segment<4>(4 * j) += block.transpose().lazyProduct(strain.segment<4>(4 * i));
+    }
+  }
+  return force;
+}
+
 bool PrismShell::add_neo_hookean_column(const Point* column, const GramStrain& strain, Wanted wanted,
                                         Curvature curvature, Response& response) const {
   const int count = options_.points_in_thickness;
@@ -241,10 +276,9 @@ double PrismShell::evaluate(Index element, const double* x, double* gradient, do
   const PrismVectors v = prism_vectors(x);
   const GramStrain strain = gram(v) - rest_[element];
   if (material_.law == SolidLaw::stvk) {
-    const GramStiffness& stiffness = stiffness_[element];
-    const GramStrain force = stiffness.lazyProduct(strain);
+    const GramStrain force = product(stiffness_[element], strain);
     if (gradient) prism_gradient(v, force, gradient);
-    if (hessian) prism_hessian(v, force, stiffness, scale_[element], curvature, hessian);
+    if (hessian) prism_hessian(v, force, unpacked(stiffness_[element]), scale_[element], curvature, hessian);
     return 0.5 * strain.dot(force);
   }
   Response response;
