@@ -187,6 +187,21 @@ TEST_F(LoadParts, StopWhereTheSmallestPartIsNotSolved) {
   EXPECT_THAT(summary.message, HasSubstr("the load stops at 0 of the whole, a larger one is not solved"));
 }
 
+/// A snap takes more Newton systems than a step towards the limit, so that few of them stop the load there.
+TEST_F(LoadParts, StopAtALimitPointWhereNoSnapIsAllowed) {
+  const auto arch = std::filesystem::path(TAUT_CATALOGUE) / "validation" / "snap_through.json";
+  const RunSummary stopped = solve(read_scene(arch, {{"solver.max_newton", "8"}}));
+  EXPECT_EQ(stopped.status, Status::limit_point);
+  const std::string before = "the load stops at ";
+  const std::size_t at = stopped.message.find(before);
+  ASSERT_NE(at, stopped.message.npos) << stopped.message;
+  EXPECT_NEAR(std::stod(stopped.message.substr(at + before.size())), 1 / 1.3, 0.015 / 1.3);
+  EXPECT_GT(value(stopped, "z"), 0);  // still on this side
+  const RunSummary snapped = solve(read_scene(arch));
+  EXPECT_EQ(snapped.status, Status::solved);
+  EXPECT_LT(value(snapped, "z"), -0.1);
+}
+
 class ShellProbes : public Probes {
  protected:
   /// A cantilever of 10 m x 1 m x 0.5 m, EI = 1, under a small force at its end.
