@@ -51,7 +51,7 @@ Selection ProbeReader::selection(const Json& json, int body, const std::string& 
 }
 
 InBox ProbeReader::box(const Json& json, const std::string& pointer) const {
-  const InBox result{vector(json["min"]), vector(json["max"])};
+  InBox result{vector(json["min"]), vector(json["max"])};
   for (int i = 0; i < 3; ++i)
     if (result.min[i] > result.max[i])
       refuse(fmt::format("{}/min/{}", pointer, i), json["min"][i].dump(),

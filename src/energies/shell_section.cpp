@@ -38,7 +38,9 @@ ShellSection::ShellSection(std::vector<Layer> layers, const std::vector<Prism>& 
   shapes_.reserve(prisms.size());
   for (const Prism& prism : prisms) shapes_.emplace_back(points_of(prism, nodes));
   for (int t = 0; t < triangles; ++t) {
-    const Prism &bottom = prisms[t], &top = prisms[static_cast<std::size_t>((levels - 1) * triangles + t)];
+    const Prism &bottom = prisms[t],
+                &top = prisms[static_cast<std::size_t>(levels - 1) * static_cast<std::size_t>(triangles) +
+                              static_cast<std::size_t>(t)];
     Matrix3 mid;
     for (int j = 0; j < 3; ++j) mid.col(j) = 0.5 * (nodes[bottom[2 * j]] + nodes[top[2 * j + 1]]);
     const Vector3 across = (mid.col(1) - mid.col(0)).cross(mid.col(2) - mid.col(0)), normal = across.normalized();
@@ -68,7 +70,8 @@ Matrix3 ShellSection::stress_in_axes(int triangle, const PrismState& state) cons
 Resultants ShellSection::resultants(int triangle, const Vector& x) const {
   Resultants sum{Vector3::Zero(), Vector3::Zero(), Vector2::Zero()};
   for (int level = 0; level < static_cast<int>(levels_.size()); ++level) {
-    const PrismShape& shape = shapes_[static_cast<std::size_t>(level * triangles() + triangle)];
+    const PrismShape& shape =
+        shapes_[static_cast<std::size_t>(level) * axes_.size() + static_cast<std::size_t>(triangle)];
     const PrismJacobian jacobian(shape);
     for (const LinePoint& line : gauss_rule(3)) {
       const Matrix3 s = stress_in_axes(triangle, state_at(triangle, level, line.gamma, x));

@@ -76,8 +76,8 @@ struct DeflatedInverse {
 
 }  // namespace
 
-EigenSolver::EigenSolver(SparseMatrix stiffness, SparseMatrix mass, int threads)
-    : stiffness_(std::move(stiffness)), mass_(std::move(mass)), threads_(threads) {
+EigenSolver::EigenSolver(const SparseMatrix& stiffness, const SparseMatrix& mass, int threads)
+    : stiffness_(stiffness), mass_(mass), threads_(threads) {
   if (stiffness_.rows() != stiffness_.cols() || mass_.rows() != mass_.cols() || stiffness_.rows() != mass_.rows()) {
     throw std::invalid_argument("EigenSolver: expected two square matrices of one size, got " +
                                 std::to_string(stiffness_.rows()) + " x " + std::to_string(stiffness_.cols()) +

@@ -25,7 +25,7 @@ class EigenSolver {
   /// Lower triangles (entries above the diagonal are ignored), in an order that fills in little (as Cholesky takes
   /// them). Rows without mass belong to nothing that moves and have to be decoupled from the others. `threads` is the
   /// most that a factorisation may use. Throws std::invalid_argument for sizes that do not fit or a mass that is zero.
-  EigenSolver(SparseMatrix stiffness, SparseMatrix mass, int threads);
+  EigenSolver(const SparseMatrix& stiffness, const SparseMatrix& mass, int threads);
 
   /// The `count` lowest pairs in ascending order. Throws std::invalid_argument unless 0 < count < the number of rows
   /// with mass; std::runtime_error where the iteration does not converge or no shift makes the matrix definite.

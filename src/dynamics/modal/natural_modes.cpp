@@ -20,6 +20,7 @@ SparseMatrix ordered_mass(const Model& model, const std::vector<int>& fixed, con
     inertia.back().set_target(1, model.positions);
   }
   std::vector<const Energy*> energies;
+  energies.reserve(inertia.size());
   for (const Inertia& part : inertia) energies.push_back(&part);
   Assembly assembly(size, energies, fixed, threads);
   assembly.set_order(order);
