@@ -322,6 +322,25 @@ def frequencies():
               probes, frequencies=max(factors))
 
 
+    prestressed_frequencies(density)
+
+
+def prestressed_frequencies(density):
+    """A strip on hinges under a force N along it: omega_n^2 = (n pi/L)^4 EI/(rho A) (1 + N L^2/(n^2 pi^2 EI))."""
+    t = 0.1
+    unit = math.sqrt(1 / (density * t)) / (2 * math.pi * 100)
+    layer = {"thickness": t, "density": density, "material": isotropic(12 / t**3, 0), "prisms": 2}
+    hinges = {"hinge": {"select": {"edges": ["x0"]}, "axes": "xz", "surface": "mid"},
+              "roller": {"select": {"edges": ["x1"]}, "axes": "z", "surface": "mid"}, "plane": HELD["plane"]}
+    for name, share, words in (("stretched", 2.0, "stretched by twice"), ("compressed", -0.5, "compressed by half of")):
+        factors = {n: (n * math.pi) ** 2 * math.sqrt(1 + share / n**2) for n in (1, 2)}
+        write(f"frequencies_{name}", f"The lowest natural frequencies of a strip on hinges, L/t = 100, {words} its buckling load; EI = 1, nu = 0, consistent mass.",
+              "Compare the two: stress changes frequencies.", 1, {"mesh": STRIP, "layers": [layer], "mass": "consistent"}, hinges,
+              {"pull": {"type": "edge_load", "select": TIP, "force_per_length": [share * math.pi**2 / 100, 0, 0]}},
+              {f"f{n}": frequency(n, 1 / unit, factor, "omega L^2 sqrt(rho A/EI), Euler and Bernoulli's beam under a force along it")
+               for n, factor in factors.items()}, frequencies=2)
+
+
 def frequency(mode, factor, value, source):
     return {"quantity": "frequency", "mode": mode, "factor": factor, "expected": {"value": value, "relative": 0.01, "source": source}}
 
