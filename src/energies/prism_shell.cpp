@@ -57,6 +57,19 @@ double first_zero_determinant(const Matrix3& a, const Matrix3& b) {
   return infinity;
 }
 
+/// Adds a b^T, which is symmetric, to `total` on and below its diagonal, and in the diagonal's 4 x 4 blocks. Lazy
+/// products: Eigen's blocked ones cost several times as much on matrices this small.
+void add_lower_product(const StrainMatrix& a, const StrainMatrix& b, GramStiffness& total) {
+  total.leftCols<4>() += a.lazyProduct(b.topRows<4>().transpose());
+  total.block<12, 4>(4, 4) += a.bottomRows<12>().lazyProduct(b.middleRows<4>(4).transpose());
+  total.block<8, 4>(8, 8) += a.bottomRows<8>().lazyProduct(b.middleRows<4>(8).transpose());
+  total.bottomRightCorner<4, 4>() += a.bottomRows<4>().lazyProduct(b.bottomRows<4>().transpose());
+}
+
+void mirror_lower(GramStiffness& stiffness) {
+  stiffness.triangularView<Eigen::StrictlyUpper>() = stiffness.transpose();
+}
+
 }  // namespace
 
 void PrismShellOptions::validate() const {
@@ -194,16 +207,16 @@ GramStiffness PrismShell::constant_stiffness(const Point* points) const {
     GramStrain coupling = GramStrain::Zero();
     double enhanced = 0;
     for (int g = 0; g < options_.points_in_thickness; ++g, ++points) {
-      // Lazy products: Eigen's blocked ones cost several times as much on matrices this small.
       const StrainMatrix stress = points->volume * points->strain.lazyProduct(material_.elasticity);
-      total += points->strain.lazyProduct(stress.transpose());
+      add_lower_product(points->strain, stress, total);
       coupling += points->enhancement * stress.col(thickness_axis);
       enhanced += points->volume * points->enhancement * points->enhancement *
                   material_.elasticity(thickness_axis, thickness_axis);
     }
     if (enhanced > 0) total -= coupling.lazyProduct(coupling.transpose() / enhanced);
   }
-  return 0.5 * (total + total.transpose());
+  mirror_lower(total);
+  return total;
 }
 
 PrismShell::PackedStiffness PrismShell::packed(const GramStiffness& stiffness) {
@@ -263,7 +276,7 @@ bool PrismShell::add_neo_hookean_column(const Point* column, const GramStrain& s
     if (wanted == Wanted::force) continue;
     const Elasticity tangent = point.volume * law.tangent(curvature == Curvature::positive_semidefinite);
     const StrainMatrix stress = point.strain.lazyProduct(tangent);
-    response.stiffness += point.strain.lazyProduct(stress.transpose());
+    add_lower_product(point.strain, stress, response.stiffness);
     coupling += point.enhancement * stress.col(thickness_axis);
     stiffness += point.enhancement * point.enhancement * tangent(thickness_axis, thickness_axis);
   }
@@ -291,6 +304,7 @@ double PrismShell::evaluate(Index element, const double* x, double* gradient, do
     return infinity;
   }
   if (gradient) prism_gradient(v, response.force, gradient);
+  if (hessian) mirror_lower(response.stiffness);
   if (hessian) prism_hessian(v, response.force, response.stiffness, scale_[element], curvature, hessian);
   return response.value;
 }
