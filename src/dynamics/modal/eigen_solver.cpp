@@ -126,11 +126,7 @@ std::vector<EigenPair> EigenSolver::search(const Shifted& inverse, int count, do
   return pairs;
 }
 
-std::vector<EigenPair> EigenSolver::lowest(int count) const {
-  if (count < 1 || count >= size_) {
-    throw std::invalid_argument("EigenSolver: expected a count from 1 to " + std::to_string(size_ - 1) + ", got " +
-                                std::to_string(count));
-  }
+std::vector<EigenPair> EigenSolver::find(int count) const {
   // A shift near the highest value asked for keeps them all apart from the rest, and K + s M far from singular.
   double shift = 1e-8 * largest_;
   for (int attempt = 0; attempt < 4; ++attempt) {
@@ -162,8 +158,24 @@ std::vector<EigenPair> EigenSolver::lowest(int count) const {
     std::sort(pairs.begin(), pairs.end(), by_value);
   }
   pairs.resize(static_cast<std::size_t>(count));
+  return pairs;
+}
+
+std::vector<EigenPair> EigenSolver::lowest(int count) const {
+  if (count < 1 || count >= size_) {
+    throw std::invalid_argument("EigenSolver: expected a count from 1 to " + std::to_string(size_ - 1) + ", got " +
+                                std::to_string(count));
+  }
+  // Where all are rigid motions their values are round-off; more are found then, for a scale of what a residual is.
+  constexpr double rigid = 1e-13;  // over the largest value
+  std::vector<EigenPair> pairs;
   double scale = 0;
-  for (const EigenPair& pair : pairs) scale = std::max(scale, std::abs(pair.value));
+  for (int asked = count; scale <= rigid * largest_; asked = std::min(2 * asked + 6, size_ - 1)) {
+    pairs = find(asked);
+    for (const EigenPair& pair : pairs) scale = std::max(scale, std::abs(pair.value));
+    if (asked == size_ - 1) break;
+  }
+  pairs.resize(static_cast<std::size_t>(count));
   for (EigenPair& pair : pairs) pair.residual = residual(pair, scale);
   return pairs;
 }

@@ -10,7 +10,7 @@ namespace taut {
 struct EigenPair {
   double value;     ///< lambda, in the unit of K over that of M
   Vector vector;    ///< phi
-  double residual;  ///< |K phi - lambda M phi| over (|lambda| + s) |M phi|, s the largest |lambda| asked for
+  double residual;  ///< |K phi - lambda M phi| over (|lambda| + s) |M phi|, s the largest |lambda| found
 };
 
 /// The lowest eigenpairs of K phi = lambda M phi for sparse symmetric K and M, M positive semidefinite, by Lanczos's
@@ -36,6 +36,8 @@ class EigenSolver {
 
  private:
   class Shifted;
+  /// The `count` lowest pairs, ascending, without residuals.
+  std::vector<EigenPair> find(int count) const;
   /// The pairs next to -shift among those M-orthogonal to `found`; fewer where the iteration ends too early.
   std::vector<EigenPair> search(const Shifted& inverse, int count, double tolerance,
                                 const std::vector<EigenPair>& found) const;

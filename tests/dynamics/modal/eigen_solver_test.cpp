@@ -66,6 +66,12 @@ TEST(EigenSolver, FindsTheRigidMotionsOfWhatFloats) {
   expect_pairs(pairs, unit(100));
 }
 
+TEST(EigenSolver, JudgesRigidMotionsByWhatVibrates) {
+  const std::vector<EigenPair> pairs = EigenSolver(1e6 * chains(3, 40, false), unit(120), 1).lowest(2);
+  for (const EigenPair& pair : pairs) EXPECT_NEAR(pair.value, 0, 1e-8);
+  expect_pairs(pairs, unit(120));
+}
+
 TEST(EigenSolver, FindsValuesBelowZero) {
   SparseMatrix stiffness = chains(1, 60, true);
   stiffness.coeffRef(30, 30) = -3;
