@@ -66,12 +66,9 @@ void add_lower_product(const StrainMatrix& a, const StrainMatrix& b, GramStiffne
   total.bottomRightCorner<4, 4>() += a.bottomRows<4>().lazyProduct(b.bottomRows<4>().transpose());
 }
 
-/// Asks for an entry that will be read soon: elements are mostly visited in order, and wait for memory.
-template <class Entry>
-void prefetch(const std::vector<Entry>& entries, std::size_t index) {
-  if (index >= entries.size()) return;
-  const char* bytes = reinterpret_cast<const char*>(&entries[index]);
-  for (std::size_t k = 0; k < sizeof(Entry); k += 64) __builtin_prefetch(bytes + k);
+/// Asks for numbers that will be read soon.
+void prefetch(const double* first, std::size_t count) {
+  for (std::size_t k = 0; k < count; k += 8) __builtin_prefetch(first + k);
 }
 
 void mirror_lower(GramStiffness& stiffness) {
@@ -297,7 +294,9 @@ double PrismShell::evaluate(Index element, const double* x, double* gradient, do
   const PrismVectors v = prism_vectors(x);
   const GramStrain strain = gram(v) - rest_[element];
   if (material_.law == SolidLaw::stvk) {
-    prefetch(stiffness_, static_cast<std::size_t>(element) + 2);
+    // Elements are mostly visited in order, and wait for memory.
+    const std::size_t soon = static_cast<std::size_t>(element) + 2;
+    if (soon < stiffness_.size()) prefetch(stiffness_[soon].data(), stiffness_[soon].size());
     const GramStrain force = product(stiffness_[element], strain);
     if (gradient) prism_gradient(v, force, gradient);
     if (hessian) prism_hessian(v, force, unpacked(stiffness_[element]), scale_[element], curvature, hessian);
