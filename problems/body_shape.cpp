@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "constraints/coupling.h"
+#include "geometry/crossing.h"
 #include "geometry/mesh_file.h"
+#include "geometry/mesh_property.h"
 #include "geometry/selection.h"
 #include "geometry/topology.h"
 #include "problems/cover_shape.h"
@@ -94,19 +96,67 @@ std::vector<double> fractions(const ThickShell& shell) {
   return parts;
 }
 
+/// One a vertex, or a single one, m.
+std::vector<double> thicknesses(const Body& body, const TriangleMesh& mesh) {
+  const ThickShell& shell = *body.shell;
+  std::vector<double> values = shell.vertex_thickness;
+  if (!shell.thickness_property.empty())
+    values = read_vertex_property(std::get<MeshFile>(body.mesh).path, shell.thickness_property);
+  if (values.empty()) {
+    double sum = 0;
+    for (const Layer& layer : shell.layers) sum += layer.thickness;
+    return {sum};
+  }
+  if (values.size() != mesh.vertices.size()) {
+    throw MeshError("found " + std::to_string(values.size()) + " thicknesses, allowed: one for each of the " +
+                    std::to_string(mesh.vertices.size()) + " vertices");
+  }
+  for (std::size_t v = 0; v < values.size(); ++v) {
+    if (!(values[v] > 0) || !std::isfinite(values[v]))
+      throw MeshError("found the thickness " + std::to_string(values[v]) + " at vertex " + std::to_string(v) +
+                      ", allowed: a number > 0");
+  }
+  return values;
+}
+
+/// Throws where the outer surfaces go through themselves or each other. Prisms that are nowhere inverted fill the space
+/// between them once then.
+void refuse_crossing(const LayeredMesh& layered, const TriangleMesh& mesh, const std::string& name) {
+  const std::size_t triangles = mesh.triangles.size();
+  std::vector<Triangle> surfaces;
+  for (const int level : {0, layered.layers}) {
+    for (const Triangle& t : mesh.triangles)
+      surfaces.push_back({layered.node(t[0], level), layered.node(t[1], level), layered.node(t[2], level)});
+  }
+  const std::optional<Crossing> crossing = find_crossing(layered.nodes, surfaces);
+  if (!crossing) return;
+  const auto called = [&](int index) {
+    const bool is_top = static_cast<std::size_t>(index) >= triangles;
+    return std::string(is_top ? "top" : "bottom") + " of face " +
+           std::to_string(static_cast<std::size_t>(index) % triangles);
+  };
+  const Triangle &first = surfaces[crossing->first], &second = surfaces[crossing->second];
+  const Vector3 centroid = (layered.nodes[second[0]] + layered.nodes[second[1]] + layered.nodes[second[2]]) / 3;
+  const int nearest = *std::min_element(first.begin(), first.end(), [&](int a, int b) {
+    return (layered.nodes[a] - centroid).squaredNorm() < (layered.nodes[b] - centroid).squaredNorm();
+  });
+  throw MeshError(name + ": the " + called(crossing->first) + " goes through the " + called(crossing->second) +
+                  " near vertex " + std::to_string(nearest / (layered.layers + 1)));
+}
+
 /// Nodes and surfaces of a thick shell; its mesh moves to the middle.
 void add_layers(const Body& body, BodyShape& shape) {
   const ThickShell& shell = *body.shell;
   TriangleMesh& mesh = shape.mesh;
   if (shell.top.empty()) {
-    double thickness = 0;
-    for (const Layer& layer : shell.layers) thickness += layer.thickness;
-    shape.layered = make_layered(mesh, std::vector{thickness}, fractions(shell), body.name);
+    shape.layered = make_layered(mesh, thicknesses(body, mesh), fractions(shell), body.name);
   } else {
     const std::vector<Vector3> top = placed_top(body, mesh);
     shape.layered = make_layered(mesh, mesh.vertices, top, fractions(shell), body.name);
     for (std::size_t v = 0; v < top.size(); ++v) mesh.vertices[v] = 0.5 * (mesh.vertices[v] + top[v]);
   }
+  // The surfaces about a flat grid cannot cross.
+  if (!shell.top.empty() || !std::holds_alternative<Grid>(body.mesh)) refuse_crossing(*shape.layered, mesh, body.name);
 }
 
 void find_rest_surfaces(BodyShape& shape) {

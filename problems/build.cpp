@@ -109,15 +109,32 @@ std::unique_ptr<Solver> build_nlopt(const Scene& scene) {
   return std::make_unique<Nlopt>(options);
 }
 
-/// Bottom and top for the mean over `both`; all nodes for a force on it. None for energies.
+/// The triangles of a mesh that touch any of these vertices, ascending both.
+std::vector<int> triangles_at(const std::vector<int>& vertices, const TriangleMesh& mesh) {
+  std::vector<int> triangles;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto selected = [&](int v) { return std::binary_search(vertices.begin(), vertices.end(), v); };
+    if (std::any_of(mesh.triangles[t].begin(), mesh.triangles[t].end(), selected))
+      triangles.push_back(static_cast<int>(t));
+  }
+  return triangles;
+}
+
+/// Bottom and top for the mean over `both`; all nodes for a force on it. Triangles for what shells have there. None for
+/// energies and frequencies.
 std::vector<int> probed_nodes(const Scene& scene, const std::vector<BodyShape>& shapes, const scene::Probe& probe) {
   std::vector<int> nodes;
-  if (probe.quantity == scene::Quantity::energy) return nodes;
+  using scene::Quantity;
+  if (probe.quantity == Quantity::energy || probe.quantity == Quantity::frequency) return nodes;
   const BodyShape& shape = shapes[static_cast<std::size_t>(probe.body)];
   const std::string pointer = "/output/probes/" + probe.name + "/select";
-  for (const int vertex : selected_vertices(scene, shape, probe.select, pointer)) {
-    const std::vector<int> at = probe.quantity == scene::Quantity::force ? shape.nodes_at(vertex, probe.surface)
-                                                                         : shape.mean_nodes(vertex, probe.surface);
+  const std::vector<int> vertices = selected_vertices(scene, shape, probe.select, pointer);
+  if (probe.quantity == Quantity::resultant || probe.quantity == Quantity::stress ||
+      probe.quantity == Quantity::stretch)
+    return triangles_at(vertices, shape.mesh);
+  for (const int vertex : vertices) {
+    const std::vector<int> at = probe.quantity == Quantity::force ? shape.nodes_at(vertex, probe.surface)
+                                                                  : shape.mean_nodes(vertex, probe.surface);
     nodes.insert(nodes.end(), at.begin(), at.end());
   }
   return nodes;

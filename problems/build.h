@@ -11,8 +11,7 @@ namespace taut {
 
 /// Reads the meshes of a scene and assembles exactly the energies and constraints that it names, with obstacles where
 /// they are at time 0. Throws InputError, "FILE: /constraints/NAME/select: ...", for what only the meshes can tell: a
-/// mesh that cannot be used, an empty selection, two pins that move one coordinate differently, a pressure without a
-/// potential.
+/// mesh that cannot be used, an empty selection, two pins that move one coordinate differently.
 std::unique_ptr<Model> build_model(const Scene& scene);
 
 TimeOptions time_options(const Scene& scene);

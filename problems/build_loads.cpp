@@ -119,22 +119,54 @@ std::vector<Triangle> pressed_triangles(const BodyShape& shape, scene::Surface s
   return triangles;
 }
 
-/// p V is a potential of the pressure where no part of the boundary can move: its forces do not depend on the origin of
-/// V then.
-void require_potential(const Scene& scene, const scene::Load& load, const BodyShape& shape, const Model& model) {
+/// A boundary vertex that can move and the axis along which it can, as text; empty where there is none. p V is a
+/// potential of the pressure only then: its forces do not depend on the origin of V.
+std::string free_boundary(const scene::Load& load, const BodyShape& shape, const Model& model) {
   for (const int vertex : boundary_vertices(shape.mesh)) {
     for (int axis = 0; axis < 3; ++axis) {
       const int variable = 3 * shape.node(vertex, shape.layered ? shape.level(load.surface) : 0) + axis;
       const auto pin = std::lower_bound(model.pins.begin(), model.pins.end(), variable,
                                         [](const PinnedVariable& p, int v) { return p.variable < v; });
       if (pin != model.pins.end() && pin->variable == variable) continue;
-      throw InputError(scene.source, pointer_to(load),
-                       "found a boundary vertex of " + shape.name + " that can move (" + std::to_string(vertex) +
-                           ", along " + "xyz"[axis] +
-                           "), where pressure times volume is no potential; allowed: a closed mesh, or pins on all "
-                           "axes of the whole boundary");
+      return "vertex " + std::to_string(vertex) + " of " + shape.name + " along " + "xyz"[axis];
     }
   }
+  return "";
+}
+
+/// Adds the forces of a pressure at these positions, a third of each triangle's to each of its vertices.
+void add_pressure_forces(double pressure, const std::vector<Triangle>& triangles, const Vector& x, Vector& forces) {
+  for (const Triangle& t : triangles) {
+    const Vector3 origin = x.segment<3>(3 * t[0]);
+    const Vector3 area = 0.5 * (x.segment<3>(3 * t[1]) - origin).cross(x.segment<3>(3 * t[2]) - origin);
+    for (const int vertex : t) forces.segment<3>(3 * vertex) += pressure / 3 * area;
+  }
+}
+
+/// Dead, with a potential, or lagged.
+void add_pressure(const scene::Load& load, const scene::Pressure& pressure, const BodyShape& shape, Model& model) {
+  const std::vector<Triangle> triangles = pressed_triangles(shape, load.surface);
+  const double size = pressure.pressure;
+  if (!pressure.follows) {
+    Vector forces = Vector::Zero(model.positions.size());
+    add_pressure_forces(size, triangles, model.positions, forces);
+    model.dead_loads.push_back(std::make_unique<DeadLoad>(load.name, std::move(forces)));
+    return;
+  }
+  const std::string free = free_boundary(load, shape, model);
+  if (free.empty()) {
+    model.pressures.push_back(std::make_unique<Pressure>(load.name, triangles, size));
+    return;
+  }
+  model.notes.push_back("pressure " + load.name + " has no potential, because the boundary can move (" + free +
+                        "): in each step its forces are those of the step's start");
+  Vector at_rest = Vector::Zero(model.positions.size());
+  add_pressure_forces(size, triangles, model.positions, at_rest);
+  model.lagged_loads.push_back(
+      {std::make_unique<DeadLoad>(load.name, std::move(at_rest), true),
+       [size, triangles](const Vector& positions, const Vector& /*velocities*/, Vector& forces) {
+         add_pressure_forces(size, triangles, positions, forces);
+       }});
 }
 
 }  // namespace
@@ -152,9 +184,7 @@ void add_loads(const Scene& scene, const std::vector<BodyShape>& shapes, Model& 
     } else if (const auto* edge = std::get_if<scene::EdgeLoad>(&load.kind)) {
       add_dead_load(load.name, edge_forces(scene, load, *edge, shape, size));
     } else if (const auto* pressure = std::get_if<scene::Pressure>(&load.kind)) {
-      require_potential(scene, load, shape, model);
-      model.pressures.push_back(
-          std::make_unique<Pressure>(load.name, pressed_triangles(shape, load.surface), pressure->pressure));
+      add_pressure(load, *pressure, shape, model);
     } else if (const auto* surface = std::get_if<scene::SurfaceLoad>(&load.kind)) {
       add_dead_load(load.name, surface_forces(load, *surface, shape, size));
     } else if (const auto* moment = std::get_if<scene::EndMoment>(&load.kind)) {

@@ -43,6 +43,7 @@ std::vector<std::unique_ptr<Energy>> add_shell(const Scene& scene, const scene::
                                                Model& model) {
   std::vector<std::unique_ptr<Energy>> elastic;
   const std::vector<scene::Layer>& layers = body.shell->layers;
+  std::vector<ShellSection::Layer> section;
   int level = 0;
   for (std::size_t k = 0; k < layers.size(); ++k) {
     const scene::Layer& layer = layers[k];
@@ -53,9 +54,14 @@ std::vector<std::unique_ptr<Energy>> add_shell(const Scene& scene, const scene::
     model.inertia.push_back(std::make_unique<Inertia>(
         inertia("inertia of " + of, prisms, shape.layered->nodes, layer.density, shape.first_node)));
     model.mass_damping.push_back(body.damping.mass);
-    elastic.push_back(std::make_unique<PrismShell>("shell of " + of, rest_prisms_of(scene, body, layer, shape, prisms),
-                                                   layer.material, body.shell->options));
+    auto energy = std::make_unique<PrismShell>("shell of " + of, rest_prisms_of(scene, body, layer, shape, prisms),
+                                               layer.material, body.shell->options);
+    section.push_back({energy.get(), layer.prisms});
+    elastic.push_back(std::move(energy));
   }
+  const auto index = static_cast<int>(&body - scene.bodies.data());
+  model.shells.push_back(
+      {index, ShellSection(std::move(section), shape.layered->prisms, shape.layered->nodes, body.shell->direction)});
   model.surfaces.insert(model.surfaces.end(), shape.rest.begin(), shape.rest.end());
   return elastic;
 }

@@ -36,7 +36,8 @@ struct Time {
   double step = 0;  ///< s; 1 / steps for quasi_static, so that time k * step always holds
   int steps = 1;
   double spectral_radius = 0.8;
-  int halvings = 0;  ///< of a static load step that is not solved
+  int halvings = 0;     ///< of a static load step that is not solved
+  int frequencies = 0;  ///< how many natural frequencies are computed at the end of a static problem
 };
 
 struct Grid {
@@ -85,7 +86,9 @@ struct Layer {
 /// A body of prisms between two surfaces.
 struct ThickShell {
   std::filesystem::path top;  ///< the top surface, the mesh is the bottom then; empty: the mesh is in the middle
-  std::vector<Layer> layers;  ///< from the bottom, at least one; without a thickness where `top` gives that of one
+  std::vector<Layer> layers;  ///< from the bottom, at least one; without a thickness where `top` or the next two say it
+  std::vector<double> vertex_thickness;  ///< m, one a vertex, all layers together; not yet compared with the mesh
+  std::string thickness_property;        ///< of the vertices of the mesh file, in place of it
   PrismShellOptions options;
   Vector3 direction = Vector3::UnitX();  ///< where fibre angles count from
 };
@@ -203,7 +206,8 @@ struct EdgeLoad {
   Vector3 force_per_length;  ///< N/m
 };
 struct Pressure {
-  double pressure;  ///< Pa
+  double pressure;      ///< Pa
+  bool follows = true;  ///< false: along the normals at rest, on the areas at rest
 };
 struct SurfaceLoad {
   Vector3 force_per_area;           ///< N/m2
@@ -254,7 +258,17 @@ struct Solver {
 };
 
 enum class FrameFormat { vtu, obj, none };
-enum class Quantity { position, displacement, displacement_length, force, energy };
+enum class Quantity {
+  position,
+  displacement,
+  displacement_length,
+  force,
+  energy,
+  resultant,
+  stress,
+  stretch,
+  frequency
+};
 struct Expected {
   double value = 0, tolerance = 0;
   bool relative = false;  ///< tolerance times the value
@@ -263,8 +277,10 @@ struct Expected {
 struct Probe {
   std::string name;
   Quantity quantity = Quantity::position;
-  int axis = 0;
-  int body = 0;      ///< index into Scene::bodies
+  int axis = 0;   ///< or component: of (N11, N22, N12, M11, M22, M12, Q1, Q2), of a stress in Voigt's order, a stretch
+  int layer = 0;  ///< of a stress or a stretch
+  int mode = 1;   ///< of a frequency
+  int body = 0;   ///< index into Scene::bodies
   Selection select;  ///< Everything for energies
   Surface surface = Surface::both;
   double factor = 1;
@@ -273,6 +289,7 @@ struct Probe {
 struct Output {
   FrameFormat format = FrameFormat::vtu;
   int every = 1;
+  bool stresses = false;  ///< of thick shells, in frames
   int pictures = 3;
   std::optional<Vector3> view;
   std::vector<Probe> probes;

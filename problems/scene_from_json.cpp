@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "problems/shell_from_json.h"
+#include "problems/probe_from_json.h"
 
 namespace taut {
 
@@ -13,9 +13,9 @@ namespace {
 using namespace scene;
 
 /// Turns a completed document into a Scene and checks what a schema cannot say.
-class SceneReader : public ShellReader {
+class SceneReader : public ProbeReader {
  public:
-  using ShellReader::ShellReader;
+  using ProbeReader::ProbeReader;
 
   Scene read(const Json& json, const std::string& default_name) {
     Scene result;
@@ -33,13 +33,12 @@ class SceneReader : public ShellReader {
     for (const auto& [name, value] : json["constraints"].items()) result.constraints.push_back(constraint(name, value));
     for (const auto& [name, value] : json["loads"].items()) result.loads.push_back(load(name, value));
     result.solver = solver(json["solver"]);
-    result.output = output(json["output"]);
+    result.output = output(json["output"], result.time);
+    check_frequencies(result);
     return result;
   }
 
  private:
-  const std::vector<Body>* bodies_ = nullptr;
-
   Time time(const Json& json) const {
     Time result;
     result.integrator = choose<Integrator>(json["integrator"], {{"implicit_euler", Integrator::implicit_euler},
@@ -49,6 +48,7 @@ class SceneReader : public ShellReader {
     result.steps = json["steps"];
     result.spectral_radius = json["spectral_radius"];
     result.halvings = json["halvings"];
+    result.frequencies = json["frequencies"];
     if (result.integrator == Integrator::quasi_static) {
       result.step = 1.0 / result.steps;
     } else if (json.contains("step")) {
@@ -57,6 +57,17 @@ class SceneReader : public ShellReader {
       missing("/time/step", "a number > 0, in s (only \"static\" goes without)");
     }
     return result;
+  }
+
+  void check_frequencies(const Scene& scene) const {
+    if (scene.time.frequencies == 0) return;
+    if (scene.time.integrator != Integrator::quasi_static)
+      refuse("/time/frequencies", std::to_string(scene.time.frequencies), "0 unless the integrator is \"static\"");
+    for (const scene::Constraint& constraint : scene.constraints) {
+      if (!std::holds_alternative<Pin>(constraint.kind))
+        refuse("/time/frequencies", std::to_string(scene.time.frequencies),
+               "0 where a constraint is not a pin (" + constraint.name + ")");
+    }
   }
 
   Body body(const std::string& name, const Json& json) const {
@@ -166,16 +177,6 @@ class SceneReader : public ShellReader {
     return result;
   }
 
-  int body_index(const Json& json, const std::string& pointer) const {
-    const std::string name = json["body"];
-    std::string names;
-    for (std::size_t i = 0; i < bodies_->size(); ++i) {
-      if ((*bodies_)[i].name == name) return static_cast<int>(i);
-      names += (i == 0 ? "" : ", ") + (*bodies_)[i].name;
-    }
-    refuse(pointer + "/body", json["body"].dump(), names);
-  }
-
   scene::Constraint constraint(const std::string& name, const Json& json) const {
     const std::string pointer = "/constraints/" + name;
     scene::Constraint result;
@@ -217,34 +218,6 @@ class SceneReader : public ShellReader {
     return result;
   }
 
-  Selection selection(const Json& json, int body, const std::string& pointer) const {
-    const std::string kind = json.begin().key();
-    const Json& value = json.begin().value();
-    if ((kind == "corners" || kind == "edges") &&
-        !std::holds_alternative<Grid>((*bodies_)[static_cast<std::size_t>(body)].mesh))
-      refuse(pointer, "\"" + kind + "\" of a body with a mesh file", "corners and edges of grids only");
-    if (kind == "vertices") return ByIndex{value.get<std::vector<int>>()};
-    if (kind == "corners") return AtCorners{value.get<std::vector<std::string>>()};
-    if (kind == "edges") return OnEdges{value.get<std::vector<std::string>>()};
-    if (kind == "box") return box(value, pointer + "/box");
-    if (kind == "sphere") return InBall{vector(value["center"]), value["radius"]};
-    if (kind == "group") return InGroup{value};
-    if (kind == "boundary") return OnBoundary{};
-    if (kind == "all") return Everything{};
-    NearestTo result;
-    for (const Json& point : value) result.points.push_back(vector(point));
-    return result;
-  }
-
-  InBox box(const Json& json, const std::string& pointer) const {
-    const InBox result{vector(json["min"]), vector(json["max"])};
-    for (int i = 0; i < 3; ++i)
-      if (result.min[i] > result.max[i])
-        refuse(fmt::format("{}/min/{}", pointer, i), json["min"][i].dump(),
-               "a number <= that of max, which is " + json["max"][i].dump());
-    return result;
-  }
-
   Motion motion(const Json& json, const std::string& pointer) const {
     Motion result;
     result.velocity = vector(json["velocity"]);
@@ -280,7 +253,7 @@ class SceneReader : public ShellReader {
       result.kind =
           EdgeLoad{selection(json["select"], result.body, pointer + "/select"), vector(json["force_per_length"])};
     } else if (type == "pressure") {
-      result.kind = Pressure{json["pressure"]};
+      result.kind = Pressure{json["pressure"], json["follows"]};
     } else if (type == "surface_load") {
       result.kind = surface_load(json);
     } else if (type == "end_moment") {
@@ -302,44 +275,6 @@ class SceneReader : public ShellReader {
     if (!on.shell) refuse(pointer + "/body", "\"" + on.name + "\", which is cloth", "a thick shell");
     direction(json["moment_per_length"], pointer + "/moment_per_length");  // not zero
     return {selection(json["select"], body, pointer + "/select"), vector(json["moment_per_length"])};
-  }
-
-  Probe probe(const std::string& name, const Json& json) const {
-    const std::string pointer = "/output/probes/" + name;
-    Probe result;
-    result.name = name;
-    const std::string quantity = json["quantity"];
-    if (json.contains("body"))
-      result.body = body_index(json, pointer);
-    else if (bodies_->size() > 1)
-      missing(pointer + "/body", "the name of a body, as there are several");
-    if (quantity == "energy") {
-      for (const char* key : {"select", "surface"})
-        if (json.contains(key)) refuse(pointer + "/" + key, json[key].dump(), "none of it for \"energy\"");
-      result.quantity = Quantity::energy;
-    } else {
-      if (!json.contains("select")) missing(pointer + "/select", "a selection");
-      result.select = selection(json["select"], result.body, pointer + "/select");
-      const Body& on = (*bodies_)[static_cast<std::size_t>(result.body)];
-      result.surface = surface(json, on, pointer, Surface::both, !quantity.starts_with("force_"));
-      result.quantity = quantity == "displacement"              ? Quantity::displacement_length
-                        : quantity.starts_with("displacement_") ? Quantity::displacement
-                        : quantity.starts_with("force_")        ? Quantity::force
-                                                                : Quantity::position;
-      if (result.quantity != Quantity::displacement_length) result.axis = quantity.back() - 'x';
-    }
-    result.factor = json["factor"];
-    if (json.contains("expected")) result.expected = expected(json["expected"], pointer + "/expected");
-    return result;
-  }
-
-  Expected expected(const Json& json, const std::string& pointer) const {
-    const auto relative = optional_number(json, "relative"), absolute = optional_number(json, "absolute");
-    if (relative.has_value() == absolute.has_value())
-      throw InputError(source_, pointer,
-                       std::string("found ") + (relative ? "both" : "neither") +
-                           " of \"relative\" and \"absolute\", allowed: exactly one of them");
-    return {json["value"], relative ? *relative : *absolute, relative.has_value(), json["source"]};
   }
 
   static scene::Solver solver(const Json& json) {
@@ -374,14 +309,15 @@ class SceneReader : public ShellReader {
     return result;
   }
 
-  Output output(const Json& json) const {
+  Output output(const Json& json, const Time& time) const {
     Output result;
     result.format = choose<FrameFormat>(
         json["format"], {{"vtu", FrameFormat::vtu}, {"obj", FrameFormat::obj}, {"none", FrameFormat::none}});
     result.every = json["every"];
+    result.stresses = json["stresses"];
     result.pictures = json["pictures"];
     if (json.contains("view")) result.view = direction(json["view"], "/output/view");
-    for (const auto& [name, value] : json["probes"].items()) result.probes.push_back(probe(name, value));
+    for (const auto& [name, value] : json["probes"].items()) result.probes.push_back(probe(name, value, time));
     return result;
   }
 };

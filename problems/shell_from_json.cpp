@@ -22,7 +22,8 @@ void ShellReader::refuse_keys(const Json& body, const std::string& pointer, std:
 }
 
 void ShellReader::check_cloth(const Json& body, const std::string& pointer) const {
-  refuse_keys(body, pointer, {"top", "material", "layers"}, "none of it where \"model\" is \"cloth\"");
+  refuse_keys(body, pointer, {"top", "material", "layers", "vertex_thickness"},
+              "none of it where \"model\" is \"cloth\"");
   if (!body.contains("thickness")) missing(pointer + "/thickness", "a number > 0, in m");
   if (!body.contains("density")) missing(pointer + "/density", "a number > 0, in kg/m3");
 }
@@ -34,6 +35,17 @@ ThickShell ShellReader::shell(const Json& body, const std::string& pointer) cons
   ThickShell result;
   if (body.contains("top")) result.top = mesh_path(body["top"]["file"], pointer + "/top/file");
   result.layers = layers(body, pointer);
+  if (body.contains("vertex_thickness")) {
+    refuse_keys(body, pointer, {"thickness", "top"}, "either \"vertex_thickness\" or this");
+    const Json& thickness = body["vertex_thickness"];
+    if (thickness.contains("values")) {
+      result.vertex_thickness = thickness["values"].get<std::vector<double>>();
+    } else if (body["mesh"].contains("file")) {
+      result.thickness_property = thickness["property"];
+    } else {
+      refuse(pointer + "/vertex_thickness", "a property of a grid", "\"values\", or a mesh file with that property");
+    }
+  }
   const Json& shell = body["shell"];
   result.options = options(shell, pointer + "/shell", number_of_prisms(result.layers));
   result.direction = direction(shell["direction"], pointer + "/shell/direction");
@@ -50,8 +62,8 @@ std::vector<Layer> ShellReader::layers(const Json& body, const std::string& poin
   }
   if (body.contains("top"))
     refuse_keys(body, pointer, {"thickness"}, "either \"top\" or this");
-  else if (!body.contains("thickness"))
-    missing(pointer + "/thickness", "a number > 0, in m (or \"layers\", or \"top\")");
+  else if (!body.contains("thickness") && !body.contains("vertex_thickness"))
+    missing(pointer + "/thickness", "a number > 0, in m (or \"layers\", \"top\" or \"vertex_thickness\")");
   if (!body.contains("density")) missing(pointer + "/density", "a number > 0, in kg/m3 (or \"layers\")");
   if (!body.contains("material")) missing(pointer + "/material", "an object (or \"layers\")");
   result.push_back(layer(body, pointer));
@@ -60,7 +72,7 @@ std::vector<Layer> ShellReader::layers(const Json& body, const std::string& poin
 
 Layer ShellReader::layer(const Json& json, const std::string& pointer) const {
   Layer result;
-  result.thickness = json.value("thickness", 1.0);  // the distance of the two surfaces where there are two
+  result.thickness = json.value("thickness", 1.0);  // a share: "top" or "vertex_thickness" say how much
   result.density = json["density"];
   result.prisms = json.value("prisms", 1);
   const Json& material = json["material"];

@@ -44,6 +44,8 @@ THIRD_PARTY = [
     ("oneapi/*", ("src/core/*.cpp",)),
     ("Ip[A-Z]*.hpp", ("solvers/ipopt.cpp",)),
     ("nlopt.h", ("solvers/nlopt.cpp",)),
+    ("Spectra/*", ("src/dynamics/modal/eigen_solver.cpp",)),
+    ("malloc.h", ("src/cli/main.cpp",)),
     ("CLI/*", ("src/cli/*.cpp",)),
     ("spdlog/*", ("src/cli/*.cpp",)),
     ("nlohmann/json_fwd.hpp", JSON_USERS + ("problems/*.h", "src/files/*.h", "src/study/*.h", "src/report/*.h", "src/cli/*.h")),

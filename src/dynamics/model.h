@@ -12,6 +12,7 @@
 #include "energies/end_moment.h"
 #include "energies/inertia.h"
 #include "energies/pressure.h"
+#include "energies/shell_section.h"
 #include "energies/stiffness_damping.h"
 #include "geometry/rest_shape.h"
 #include "geometry/triangle_mesh.h"
@@ -43,6 +44,12 @@ struct Model {
 
   std::vector<RestTriangle> surfaces;  ///< outer surfaces of thick shells at rest; their vertices are in `triangles`
 
+  struct Shell {
+    int body;
+    ShellSection section;
+  };
+  std::vector<Shell> shells;  ///< one per thick shell; their layers are among `elastic`
+
   std::vector<std::unique_ptr<Inertia>> inertia;  ///< one per body with mass, or per layer of a thick shell
   std::vector<double> mass_damping;               ///< 1/s, one per inertia
   std::vector<std::unique_ptr<Energy>> elastic;   ///< membrane, bending, layers of thick shells
@@ -59,12 +66,12 @@ struct Model {
     /// Adds the nodal forces at these positions and velocities to the third argument.
     std::function<void(const Vector&, const Vector&, Vector&)> forces;
   };
-  std::vector<LaggedLoad> lagged_loads;  ///< wind
+  std::vector<LaggedLoad> lagged_loads;  ///< wind, pressure without a potential
   std::vector<std::unique_ptr<Constraint>> constraints;
   std::vector<std::unique_ptr<LinearEqualities>> equalities;  ///< couplings of fine membranes to their shells
   std::vector<PinnedVariable> pins;                           ///< ascending variables
-  std::vector<std::string> notes;                             ///< what a person should know before trusting the result
-  std::vector<std::vector<int>> probed;                       ///< the vertices of each of Scene::output.probes
+  std::vector<std::vector<int>> probed;  ///< vertices of each of Scene::output.probes, or triangles of its body
+  std::vector<std::string> notes;        ///< what a person should know before trusting the result, a line each
   /// Moves the obstacles to where they are at `time`; empty where none move.
   std::vector<std::function<void(double time)>> movers;
 };

@@ -80,13 +80,13 @@ Matrix3 PrismKinematics::jacobian(const Vector3& l, double gamma) const {
   return frame_.transpose() * rest_ * tangents(l, gamma);
 }
 
-StrainMatrix PrismKinematics::covariant(const Vector3& l, double gamma) const {
+StrainMatrix covariant_strain(PrismElement element, const Vector3& l, double gamma) {
   const TangentCoefficients g = tangents(l, gamma);
   StrainMatrix e;
   e.col(0) = half_product(g.col(0), g.col(0));
   e.col(1) = half_product(g.col(1), g.col(1));
   e.col(3) = 2 * half_product(g.col(0), g.col(1));
-  if (element_ == PrismElement::plain) {
+  if (element == PrismElement::plain) {
     e.col(2) = half_product(g.col(2), g.col(2));
     e.col(4) = 2 * half_product(g.col(0), g.col(2));
     e.col(5) = 2 * half_product(g.col(1), g.col(2));
@@ -110,8 +110,8 @@ StrainMatrix PrismKinematics::covariant(const Vector3& l, double gamma) const {
   return e;
 }
 
-StrainMatrix PrismKinematics::strain(const Vector3& l, double gamma) const {
-  StrainMatrix e = covariant(l, gamma) * to_frame(jacobian(l, gamma).inverse()).transpose();
+StrainMatrix PrismKinematics::strain(const StrainMatrix& covariant, const Vector3& l, double gamma) const {
+  StrainMatrix e = covariant.lazyProduct(to_frame(jacobian(l, gamma).inverse()).transpose());
   e.rightCols<2>() *= shear_scale_;
   return e;
 }

@@ -33,6 +33,10 @@ PrismVectors prism_vectors(const double* y);
 /// Inner products in the places of GramStrain, those of a vector with itself halved.
 GramStrain gram(const PrismVectors& v);
 
+/// Covariant strains 11, 22, 33, 2x12, 2x13, 2x23 in the coordinates (L2, L3, gamma) at barycentric coordinates L and
+/// gamma: the same for all prisms, as linear functions of the GramStrain.
+StrainMatrix covariant_strain(PrismElement element, const Vector3& l, double gamma);
+
 /// Strains of one prism in the frame of its mid-surface triangle: axis 3 is the triangle's normal at rest, axis 1 a
 /// given direction projected on its plane.
 class PrismKinematics {
@@ -42,7 +46,11 @@ class PrismKinematics {
   PrismKinematics(const PrismShape& rest, const Vector3& direction, PrismElement element, double shear_factor);
 
   /// Green strain at barycentric coordinates L and gamma as a linear function of the GramStrain.
-  StrainMatrix strain(const Vector3& l, double gamma) const;
+  StrainMatrix strain(const Vector3& l, double gamma) const {
+    return strain(covariant_strain(element_, l, gamma), l, gamma);
+  }
+  /// The same from covariant_strain() there.
+  StrainMatrix strain(const StrainMatrix& covariant, const Vector3& l, double gamma) const;
   /// dX/dq of MLTS (2) in the frame, m.
   Matrix3 jacobian(const Vector3& l, double gamma) const;
   /// The frame's axes, one per column.
@@ -51,9 +59,6 @@ class PrismKinematics {
   GramStrain rest_gram() const { return gram(rest_); }
 
  private:
-  /// Covariant strains 11, 22, 33, 2x12, 2x13, 2x23 in the coordinates (L2, L3, gamma).
-  StrainMatrix covariant(const Vector3& l, double gamma) const;
-
   PrismVectors rest_;
   Matrix3 frame_;
   PrismElement element_;

@@ -57,6 +57,24 @@ double first_zero_determinant(const Matrix3& a, const Matrix3& b) {
   return infinity;
 }
 
+/// Adds a b^T, which is symmetric, to `total` on and below its diagonal, and in the diagonal's 4 x 4 blocks. Lazy
+/// products: Eigen's blocked ones cost several times as much on matrices this small.
+void add_lower_product(const StrainMatrix& a, const StrainMatrix& b, GramStiffness& total) {
+  total.leftCols<4>() += a.lazyProduct(b.topRows<4>().transpose());
+  total.block<12, 4>(4, 4) += a.bottomRows<12>().lazyProduct(b.middleRows<4>(4).transpose());
+  total.block<8, 4>(8, 8) += a.bottomRows<8>().lazyProduct(b.middleRows<4>(8).transpose());
+  total.bottomRightCorner<4, 4>() += a.bottomRows<4>().lazyProduct(b.bottomRows<4>().transpose());
+}
+
+/// Asks for numbers that will be read soon.
+void prefetch(const double* first, std::size_t count) {
+  for (std::size_t k = 0; k < count; k += 8) __builtin_prefetch(first + k);
+}
+
+void mirror_lower(GramStiffness& stiffness) {
+  stiffness.triangularView<Eigen::StrictlyUpper>() = stiffness.transpose();
+}
+
 }  // namespace
 
 void PrismShellOptions::validate() const {
@@ -89,6 +107,19 @@ PrismShell::PrismShell(std::string name, const std::vector<RestPrism>& prisms, c
     : name_(std::move(name)), material_(material), options_(options) {
   options_.validate();
   if (options_.element == PrismElement::plain) options_.enhanced_thickness = false;
+  std::vector<Place> places;
+  for (const TrianglePoint& in_plane : triangle_rule(options_.points_in_plane)) {
+    for (const LinePoint& line : gauss_rule(options_.points_in_thickness))
+      places.push_back(place_at(in_plane.l, line.gamma, in_plane.weight * line.weight));
+  }
+  std::vector<Point> points(places.size());
+  kinematics_.reserve(prisms.size());
+  rest_.reserve(prisms.size());
+  scale_.reserve(prisms.size());
+  if (material_.law == SolidLaw::stvk)
+    stiffness_.reserve(prisms.size());
+  else
+    points_.reserve(prisms.size() * places.size());
   for (const RestPrism& prism : prisms) {
     const PrismShape shape(prism.points);
     if (!(PrismJacobian(shape).smallest() > 0)) {
@@ -96,29 +127,25 @@ PrismShell::PrismShell(std::string name, const std::vector<RestPrism>& prisms, c
                                   std::to_string(rest_.size()));
     }
     kinematics_.emplace_back(shape, prism.direction, options_.element, shear_factor(shape, options_));
-    std::vector<Point> points;
-    for (const TrianglePoint& in_plane : triangle_rule(options_.points_in_plane)) {
-      const std::vector<Point> column = column_at(kinematics_.back(), in_plane.l, in_plane.weight);
-      points.insert(points.end(), column.begin(), column.end());
-    }
+    for (std::size_t q = 0; q < places.size(); ++q) points[q] = point_at(kinematics_.back(), places[q]);
     stencils_.add_vertices(prism.nodes);
     rest_.push_back(kinematics_.back().rest_gram());
     scale_.emplace_back(2 * rest_.back()[gram_pair(0, 0)], 2 * rest_.back()[gram_pair(1, 1)],
                         shape.director.squaredNorm() / 3);
     if (material_.law == SolidLaw::stvk) {
-      stiffness_.push_back(constant_stiffness(points.data()));
+      stiffness_.push_back(packed(constant_stiffness(points.data())));
     } else {
       points_.insert(points_.end(), points.begin(), points.end());
     }
   }
 }
 
-PrismShell::Point PrismShell::point_at(const PrismKinematics& kinematics, const Vector3& l, double gamma,
-                                       double weight) const {
+PrismShell::Point PrismShell::point_at(const PrismKinematics& kinematics, const Place& place) const {
+  const auto& [l, gamma, weight, covariant] = place;
   const double middle = kinematics.jacobian(l, 0).determinant(), here = kinematics.jacobian(l, gamma).determinant();
   // Weighted so that constant stresses do no work on it: the patch test (Simo and Rifai 1990).
   const double enhancement = options_.enhanced_thickness ? gamma * middle / here : 0.0;
-  return {kinematics.strain(l, gamma), weight * here, enhancement};
+  return {kinematics.strain(covariant, l, gamma), weight * here, enhancement};
 }
 
 std::vector<PrismShell::Point> PrismShell::column_at(const PrismKinematics& kinematics, const Vector3& l,
@@ -126,7 +153,7 @@ std::vector<PrismShell::Point> PrismShell::column_at(const PrismKinematics& kine
   std::vector<Point> column;
   column.reserve(static_cast<std::size_t>(options_.points_in_thickness));
   for (const LinePoint& line : gauss_rule(options_.points_in_thickness)) {
-    column.push_back(point_at(kinematics, l, line.gamma, weight * line.weight));
+    column.push_back(point_at(kinematics, place_at(l, line.gamma, weight * line.weight)));
   }
   return column;
 }
@@ -159,7 +186,7 @@ double PrismShell::enhanced_strain(const Point* column, const Voigt* strains) co
 PrismState PrismShell::state(Index element, const double* x, const Vector3& l, double gamma) const {
   const PrismKinematics& kinematics = kinematics_[element];
   const GramStrain gram_strain = gram(prism_vectors(x)) - rest_[element];
-  const Point here = point_at(kinematics, l, gamma, 1.0);
+  const Point here = point_at(kinematics, place_at(l, gamma, 1.0));
   PrismState state{kinematics.frame(), here.strain.transpose() * gram_strain, Voigt::Zero()};
   if (options_.enhanced_thickness) {
     const std::vector<Point> column = column_at(kinematics, l, 1.0);
@@ -185,15 +212,51 @@ GramStiffness PrismShell::constant_stiffness(const Point* points) const {
     GramStrain coupling = GramStrain::Zero();
     double enhanced = 0;
     for (int g = 0; g < options_.points_in_thickness; ++g, ++points) {
-      const StrainMatrix stress = points->volume * points->strain * material_.elasticity;
-      total += points->strain * stress.transpose();
+      const StrainMatrix stress = points->volume * points->strain.lazyProduct(material_.elasticity);
+      add_lower_product(points->strain, stress, total);
       coupling += points->enhancement * stress.col(thickness_axis);
       enhanced += points->volume * points->enhancement * points->enhancement *
                   material_.elasticity(thickness_axis, thickness_axis);
     }
-    if (enhanced > 0) total -= coupling * coupling.transpose() / enhanced;
+    if (enhanced > 0) total -= coupling.lazyProduct(coupling.transpose() / enhanced);
   }
-  return 0.5 * (total + total.transpose());
+  mirror_lower(total);
+  return total;
+}
+
+PrismShell::PackedStiffness PrismShell::packed(const GramStiffness& stiffness) {
+  PackedStiffness blocks;
+  double* at = blocks.data();
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j <= i; ++j, at += 16) Eigen::Matrix4d::Map(at) = stiffness.block<4, 4>(4 * i, 4 * j);
+  }
+  return blocks;
+}
+
+GramStiffness PrismShell::unpacked(const PackedStiffness& stiffness) {
+  GramStiffness full;
+  const double* at = stiffness.data();
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j <= i; ++j, at += 16) {
+      const Eigen::Map<const Eigen::Matrix4d> block(at);
+      full.block<4, 4>(4 * i, 4 * j) = block;
+      if (j < i) full.block<4, 4>(4 * j, 4 * i) = block.transpose();
+    }
+  }
+  return full;
+}
+
+GramStrain PrismShell::product(const PackedStiffness& stiffness, const GramStrain& strain) {
+  GramStrain force = GramStrain::Zero();
+  const double* at = stiffness.data();
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j <= i; ++j, at += 16) {
+      const Eigen::Map<const Eigen::Matrix4d> block(at);
+      force.segment<4>(4 * i) += block.lazyProduct(strain.segment<4>(4 * j));
+      if (j < i) force.segment<4>(4 * j) += block.transpose().lazyProduct(strain.segment<4>(4 * i));
+    }
+  }
+  return force;
 }
 
 bool PrismShell::add_neo_hookean_column(const Point* column, const GramStrain& strain, Wanted wanted,
@@ -218,7 +281,7 @@ bool PrismShell::add_neo_hookean_column(const Point* column, const GramStrain& s
     if (wanted == Wanted::force) continue;
     const Elasticity tangent = point.volume * law.tangent(curvature == Curvature::positive_semidefinite);
     const StrainMatrix stress = point.strain.lazyProduct(tangent);
-    response.stiffness += point.strain.lazyProduct(stress.transpose());
+    add_lower_product(point.strain, stress, response.stiffness);
     coupling += point.enhancement * stress.col(thickness_axis);
     stiffness += point.enhancement * point.enhancement * tangent(thickness_axis, thickness_axis);
   }
@@ -231,10 +294,12 @@ double PrismShell::evaluate(Index element, const double* x, double* gradient, do
   const PrismVectors v = prism_vectors(x);
   const GramStrain strain = gram(v) - rest_[element];
   if (material_.law == SolidLaw::stvk) {
-    const GramStiffness& stiffness = stiffness_[element];
-    const GramStrain force = stiffness * strain;
+    // Elements are mostly visited in order, and wait for memory.
+    const std::size_t soon = static_cast<std::size_t>(element) + 2;
+    if (soon < stiffness_.size()) prefetch(stiffness_[soon].data(), stiffness_[soon].size());
+    const GramStrain force = product(stiffness_[element], strain);
     if (gradient) prism_gradient(v, force, gradient);
-    if (hessian) prism_hessian(v, force, stiffness, scale_[element], curvature, hessian);
+    if (hessian) prism_hessian(v, force, unpacked(stiffness_[element]), scale_[element], curvature, hessian);
     return 0.5 * strain.dot(force);
   }
   Response response;
@@ -247,6 +312,7 @@ double PrismShell::evaluate(Index element, const double* x, double* gradient, do
     return infinity;
   }
   if (gradient) prism_gradient(v, response.force, gradient);
+  if (hessian) mirror_lower(response.stiffness);
   if (hessian) prism_hessian(v, response.force, response.stiffness, scale_[element], curvature, hessian);
   return response.value;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/energy.h"
@@ -81,12 +82,28 @@ class PrismShell final : public Energy {
     GramStiffness stiffness = GramStiffness::Zero();
   };
   enum class Wanted { value, force, stiffness };
+  /// A GramStiffness by the ten 4 x 4 blocks of its lower triangle, row after row: an evaluation is bound by the memory
+  /// it reads.
+  using PackedStiffness = std::array<double, 160>;
 
-  Point point_at(const PrismKinematics& kinematics, const Vector3& l, double gamma, double weight) const;
+  /// Where a point is, and what all prisms have in common there.
+  struct Place {
+    Vector3 l;
+    double gamma, weight;
+    StrainMatrix covariant;
+  };
+
+  Place place_at(const Vector3& l, double gamma, double weight) const {
+    return {l, gamma, weight, covariant_strain(options_.element, l, gamma)};
+  }
+  Point point_at(const PrismKinematics& kinematics, const Place& place) const;
   std::vector<Point> column_at(const PrismKinematics& kinematics, const Vector3& l, double weight) const;
   /// The alpha of a column whose strains without it are `strains`.
   double enhanced_strain(const Point* column, const Voigt* strains) const;
   GramStiffness constant_stiffness(const Point* points) const;
+  static PackedStiffness packed(const GramStiffness& stiffness);
+  static GramStiffness unpacked(const PackedStiffness& stiffness);
+  static GramStrain product(const PackedStiffness& stiffness, const GramStrain& strain);
   bool add_neo_hookean_column(const Point* column, const GramStrain& strain, Wanted wanted, Curvature curvature,
                               Response& response) const;
 
@@ -95,10 +112,10 @@ class PrismShell final : public Energy {
   PrismShellOptions options_;
   Stencils stencils_{18};
   std::vector<PrismKinematics> kinematics_;
-  std::vector<GramStrain> rest_;          // one an element
-  std::vector<Vector3> scale_;            // squared lengths of edges and directors at rest, m^2
-  std::vector<GramStiffness> stiffness_;  // stvk: one an element
-  std::vector<Point> points_;             // neo_hookean: columns of points_in_thickness, points_in_plane an element
+  std::vector<GramStrain> rest_;            // one an element
+  std::vector<Vector3> scale_;              // squared lengths of edges and directors at rest, m^2
+  std::vector<PackedStiffness> stiffness_;  // stvk: one an element
+  std::vector<Point> points_;               // neo_hookean: columns of points_in_thickness, points_in_plane an element
 };
 
 }  // namespace taut

@@ -91,7 +91,7 @@ std::string file_name(const std::string& scene_name) {
 
 void remove_frames_after(const fs::path& folder, int last_step) {
   constexpr std::array<std::string_view, 3> ours{".vtu", ".obj", ".svg"};
-  for (const char* part : {"frames", "pictures"}) {
+  for (const char* part : {"frames", "pictures", "modes"}) {
     for (const fs::path& file : files_in(folder / part)) {
       const bool is_ours = std::find(ours.begin(), ours.end(), file.extension().string()) != ours.end();
       if (is_ours && step_of(file).value_or(-1) > last_step) fs::remove(file);
@@ -109,7 +109,7 @@ FrameOutput::FrameOutput(const Scene& scene, const Model& model, fs::path folder
       folder_(std::move(folder)),
       name_(file_name(scene.name)),
       extension_(extension_of(scene.output.format)),
-      fields_(model) {
+      fields_(model, scene.output.stresses) {
   remove_frames_after(folder_, last_step);
   if (!extension_.empty()) fs::create_directories(folder_ / "frames");
   if (scene.output.pictures > 0) fs::create_directories(folder_ / "pictures");
@@ -149,6 +149,20 @@ void FrameOutput::write_frame(const State& state) {
     write_obj(folder_ / file, state.positions, model_.triangles);
   }
   if (frames_.empty() || frames_.back().second != file) frames_.emplace_back(time, file);
+}
+
+void FrameOutput::write_modes(const State& state, const std::vector<NaturalMode>& modes) const {
+  if (extension_ != ".vtu") return;
+  fs::create_directories(folder_ / "modes");
+  for (std::size_t k = 0; k < modes.size(); ++k) {
+    double largest = 0;
+    for (Index i = 0; i < modes[k].shape.size(); i += 3)
+      largest = std::max(largest, modes[k].shape.segment<3>(i).norm());
+    const Vector shape = modes[k].shape / (largest > 0 ? largest : 1);
+    const Field displacement{"displacement", 3, {shape.begin(), shape.end()}};
+    write_vtu(folder_ / fmt::format("modes/{}_mode_{:05}.vtu", name_, k + 1),
+              {time_of(state.step), state.positions, model_.triangles, {displacement}, {}});
+  }
 }
 
 std::string FrameOutput::write_picture(const State& state) const try {

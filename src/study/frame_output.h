@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "dynamics/modal/natural_modes.h"
 #include "dynamics/model.h"
 #include "dynamics/stepper.h"
 #include "problems/scene.h"
@@ -13,7 +14,7 @@
 namespace taut {
 
 /// Writes the frames and pictures of a run: FOLDER/frames/NAME_00010.vtu (or .obj), FOLDER/NAME.pvd,
-/// FOLDER/pictures/NAME_00100.svg.
+/// FOLDER/pictures/NAME_00100.svg, FOLDER/modes/NAME_mode_00001.vtu.
 class FrameOutput {
  public:
   /// Scene and model are borrowed. Frames that the folder has of steps up to `last_step` count as written, later ones
@@ -25,6 +26,8 @@ class FrameOutput {
   /// True for output.pictures steps, evenly over the run, the last included.
   bool picture_is_due(int step) const;
   void write_frame(const State& state);
+  /// One file a mode in FOLDER/modes, its shape as `displacement` on the state, largest displacement 1.
+  void write_modes(const State& state, const std::vector<NaturalMode>& modes) const;
   /// Returns what went wrong, or nothing: a picture never fails a run.
   std::string write_picture(const State& state) const;
   /// Brings the PVD up to date.

@@ -1,5 +1,6 @@
 #include "study/probes.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -47,6 +48,30 @@ Vector3 sum_over(const std::vector<int>& nodes, const Vector& values) {
   return sum;
 }
 
+/// What a probe asks of the middle of a triangle.
+double shell_value(const ShellSection& section, const scene::Probe& probe, int triangle, const Vector& x) {
+  if (probe.quantity == Quantity::resultant) {
+    const Resultants r = section.resultants(triangle, x);
+    return probe.axis < 3 ? r.n[probe.axis] : probe.axis < 6 ? r.m[probe.axis - 3] : r.q[probe.axis - 6];
+  }
+  const double gamma = probe.surface == scene::Surface::bottom ? -1 : probe.surface == scene::Surface::mid ? 0 : 1;
+  const LayerState state = section.state(triangle, probe.layer, gamma, x);
+  return probe.quantity == Quantity::stress ? state.stress[probe.axis] : state.stretches[probe.axis];
+}
+
+/// Its mean over triangles, weighted by area.
+double mean_shell_value(const Model& model, const scene::Probe& probe, const std::vector<int>& triangles,
+                        const Vector& x) {
+  const auto shell = std::find_if(model.shells.begin(), model.shells.end(),
+                                  [&](const Model::Shell& s) { return s.body == probe.body; });
+  double sum = 0, area = 0;
+  for (const int triangle : triangles) {
+    sum += shell->section.area(triangle) * shell_value(shell->section, probe, triangle, x);
+    area += shell->section.area(triangle);
+  }
+  return sum / area;
+}
+
 }  // namespace
 
 double ProbeValue::allowed() const {
@@ -63,7 +88,14 @@ std::vector<ProbeValue> probes_of(const Scene& scene) {
   return probes;
 }
 
-std::vector<double> probe_values(const Scene& scene, const Model& model, const Problem& problem, const Vector& x) {
+std::vector<NaturalMode> modes_at(const Scene& scene, const Model& model, const Problem& problem, const Vector& x,
+                                  int step, int threads) {
+  if (scene.time.frequencies == 0 || step < scene.time.steps) return {};
+  return natural_modes(model, problem.energies, x, scene.time.frequencies, threads);
+}
+
+std::vector<double> probe_values(const Scene& scene, const Model& model, const Problem& problem, const Vector& x,
+                                 const std::vector<NaturalMode>& modes) {
   std::vector<double> values;
   std::optional<Vector> gradient;
   for (std::size_t k = 0; k < scene.output.probes.size(); ++k) {
@@ -89,6 +121,15 @@ std::vector<double> probe_values(const Scene& scene, const Model& model, const P
         break;
       case Quantity::energy:
         value = elastic_energy(model, model.bodies[static_cast<std::size_t>(probe.body)], x);
+        break;
+      case Quantity::resultant:
+      case Quantity::stress:
+      case Quantity::stretch:
+        value = mean_shell_value(model, probe, nodes, x);
+        break;
+      case Quantity::frequency:
+        value = probe.mode <= static_cast<int>(modes.size()) ? modes[static_cast<std::size_t>(probe.mode) - 1].frequency
+                                                             : std::numeric_limits<double>::quiet_NaN();
         break;
     }
     values.push_back(probe.factor * value);

@@ -52,6 +52,7 @@ void add_step(RunSummary& summary, const StepRecord& record) {
     deepest->edge = std::max(deepest->edge, penetration.edge);
     deepest->face = std::max(deepest->face, penetration.face);
   }
+  if (!record.modes.empty()) summary.modes = record.modes;
   for (const auto& [name, value] : record.probes) {
     const auto same = [&](const ProbeValue& probe) { return probe.name == name; };
     const auto probe = std::find_if(summary.probes.begin(), summary.probes.end(), same);

@@ -20,6 +20,12 @@ struct Penetration {
 
 using NamedNumbers = std::vector<std::pair<std::string, double>>;
 
+/// A natural frequency and how well its mode is one.
+struct ModeRecord {
+  double frequency = 0;  ///< Hz
+  double residual = 0;   ///< EigenPair::residual
+};
+
 /// One line of steps.jsonl: what is known about one step after the judge has looked at it.
 struct StepRecord {
   int step = 0;     ///< from 1
@@ -32,6 +38,7 @@ struct StepRecord {
   NamedNumbers energies;   ///< Stepper::energies(), J
   NamedNumbers penalties;  ///< by constraint
   NamedNumbers probes;
+  std::vector<ModeRecord> modes;  ///< after the last step, where the scene asks for them
   Counts counts;
   Timings seconds;     ///< the solver's
   double judging = 0;  ///< s
@@ -92,6 +99,7 @@ struct RunSummary {
   std::vector<WorstElement> worst_elements;
   std::optional<UnfinishedStep> unfinished;
   std::vector<ProbeValue> probes;  ///< after the last step
+  std::vector<ModeRecord> modes;   ///< as well
   Counts counts;
   RunSeconds seconds;
   std::int64_t peak_memory_bytes = 0;

@@ -155,6 +155,18 @@ std::vector<ProbeValue> read_probes(const Json& json) {
   return probes;
 }
 
+Json modes_json(const std::vector<ModeRecord>& modes) {
+  Json json = Json::array();
+  for (const ModeRecord& mode : modes) json.push_back({{"frequency", mode.frequency}, {"residual", mode.residual}});
+  return json;
+}
+
+std::vector<ModeRecord> read_modes(const Json& json) {
+  std::vector<ModeRecord> modes;
+  for (const Json& mode : json) modes.push_back({number(mode.at("frequency")), number(mode.at("residual"))});
+  return modes;
+}
+
 Json unfinished_json(const std::optional<UnfinishedStep>& unfinished) {
   if (!unfinished) return nullptr;
   return {{"step", unfinished->step},
@@ -197,6 +209,7 @@ StepRecord step_of(const Json& json) {
   record.energies = read_numbers(json.at("energies"));
   record.penalties = read_numbers(json.at("penalties"));
   if (json.contains("probes")) record.probes = read_numbers(json["probes"]);
+  if (json.contains("modes")) record.modes = read_modes(json["modes"]);
   const Json &counts = json.at("counts"), &seconds = json.at("seconds");
   record.counts.outer = counts.at("outer");
   record.counts.linear_solves = counts.at("linear_solves");
@@ -231,6 +244,7 @@ RunSummary summary_of(const Json& json) {
                                   number(u.at("feasibility")), number(u.at("complementarity"))};
   }
   if (json.contains("probes")) s.probes = read_probes(json["probes"]);
+  if (json.contains("modes")) s.modes = read_modes(json["modes"]);
   read_counts(json.at("counts"), s.counts);
   read_seconds(json.at("seconds"), s.seconds);
   s.peak_memory_bytes = json.at("peak_memory_bytes");
@@ -261,6 +275,7 @@ std::string summary_text(const RunSummary& s) {
   json["worst_elements"] = worst_elements_json(s);
   json["unfinished_step"] = unfinished_json(s.unfinished);
   json["probes"] = probes_json(s);
+  if (!s.modes.empty()) json["modes"] = modes_json(s.modes);
   json["counts"] = counts_json(s.counts);
   json["counts"]["symbolic_analyses"] = s.counts.symbolic_analyses;
   json["counts"]["matrix_allocations"] = s.counts.matrix_allocations;
@@ -298,6 +313,7 @@ std::string step_line(const StepRecord& record) {
   json["energies"] = numbers_json(record.energies);
   json["penalties"] = numbers_json(record.penalties);
   if (!record.probes.empty()) json["probes"] = numbers_json(record.probes);
+  if (!record.modes.empty()) json["modes"] = modes_json(record.modes);
   json["counts"] = counts_json(record.counts);
   json["seconds"] = {{"total", record.seconds.total}};
   json["seconds"].update(timings_json(record.seconds));

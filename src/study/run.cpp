@@ -53,6 +53,7 @@ class Run {
   void loop();
   bool step();
   StepRecord judge(const Problem& problem, const Result& result);
+  void find_modes(const Problem& problem, const Vector& x, StepRecord& record);
   void give_up(const Problem& problem, const Result& result);
   void write_step(const StepRecord& record, bool last);
   void write_checkpoint(bool finished);
@@ -81,6 +82,7 @@ class Run {
   std::string stopped_message_;
   std::optional<UnfinishedStep> unfinished_;
   std::vector<WorstElement> unfinished_worst_;
+  std::vector<NaturalMode> modes_;  // about the end of the last step
 };
 
 /// False where an earlier process has finished the run.
@@ -109,10 +111,10 @@ bool Run::begin() {
   const std::vector<ProbeValue> measured = std::exchange(summary_.probes, probes_of(scene_));
   for (std::size_t k = 0; k < std::min(measured.size(), summary_.probes.size()); ++k)
     summary_.probes[k].value = measured[k].value;
+  if (!from) summary_.notes = model_->notes;
   summary_.version = options_.version;
   summary_.machine = machine;
   summary_.threads = threads_;
-  if (!from) summary_.notes = model_->notes;
   seconds_before_ = summary_.seconds.total;
   if (from) {
     before_ = from->before;
@@ -186,8 +188,6 @@ StepRecord Run::judge(const Problem& problem, const Result& result) {
     record.residuals = residuals(problem, result);
     record.penetrations = penetrations(*model_, result.x);
     record.objective = objective(problem, result.x);
-    const std::vector<double> values = probe_values(scene_, *model_, problem, result.x);
-    for (std::size_t k = 0; k < values.size(); ++k) record.probes.emplace_back(scene_.output.probes[k].name, values[k]);
   }
   name_for_people(record.residuals, problem, *model_);
   record.step = stepper_->state().step + 1;
@@ -200,10 +200,29 @@ StepRecord Run::judge(const Problem& problem, const Result& result) {
     record.status = record.residuals.finite ? Status::stalled : Status::not_finite;
     record.message = solver_->name() + " says solved, but the residuals are not within tolerance";
   }
+  const Stopwatch watch(record.judging);
+  if (record.status == Status::solved) find_modes(problem, result.x, record);
+  const std::vector<double> values = probe_values(scene_, *model_, problem, result.x, modes_);
+  for (std::size_t k = 0; k < values.size(); ++k) record.probes.emplace_back(scene_.output.probes[k].name, values[k]);
   for (std::size_t k = 0; k < result.penalties.size() && k < problem.constraints.size(); ++k) {
     record.penalties.emplace_back(problem.constraints[k]->name(), result.penalties[k]);
   }
   return record;
+}
+
+/// Natural modes about the end of the last step; it is not solved without them.
+void Run::find_modes(const Problem& problem, const Vector& x, StepRecord& record) try {
+  modes_ = modes_at(scene_, *model_, problem, x, record.step, threads_);
+  for (const NaturalMode& mode : modes_) {
+    record.modes.push_back({mode.frequency, mode.residual});
+    if (mode.residual <= scene_.solver.tolerance.stationarity) continue;
+    record.status = Status::stalled;
+    record.message =
+        "the mode of " + std::to_string(mode.frequency) + " Hz has a residual that is not within tolerance";
+  }
+} catch (const std::exception& error) {  // more modes than variables, or no convergence
+  record.status = Status::stalled;
+  record.message = error.what();
 }
 
 void Run::give_up(const Problem& problem, const Result& result) {
@@ -224,6 +243,7 @@ void Run::write_step(const StepRecord& record, bool last) {
   folder_->append_step(record);
   if (record.step == stepper_->state().step) {
     if (last || frames_->frame_is_due(record.step)) frames_->write_frame(stepper_->state());
+    if (!modes_.empty()) frames_->write_modes(stepper_->state(), modes_);
     if ((last && scene_.output.pictures > 0) || frames_->picture_is_due(record.step)) {
       const std::string problem = frames_->write_picture(stepper_->state());
       if (!problem.empty()) summary_.notes.push_back(problem);

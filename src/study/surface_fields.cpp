@@ -26,9 +26,45 @@ double tension_of(const double* multipliers, bool matrix) {
   return 2 * eigen2(multipliers[0], multipliers[1] / std::numbers::sqrt2, multipliers[2]).values[0];
 }
 
+/// Puts values of a triangle in a field whose name may be new.
+template <class Values>
+void put(std::vector<Field>& fields, const std::string& name, std::size_t cells, std::size_t cell,
+         const Values& values) {
+  auto field = std::find_if(fields.begin(), fields.end(), [&](const Field& f) { return f.name == name; });
+  const auto width = static_cast<std::size_t>(values.size());
+  if (field == fields.end()) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    field = fields.insert(field, {name, static_cast<int>(width), std::vector<double>(width * cells, nan)});
+  }
+  std::copy(values.begin(), values.end(), field->values.begin() + static_cast<std::ptrdiff_t>(cell * width));
+}
+
+void add_stresses(const Model& model, const Vector& x, std::vector<Field>& fields) {
+  const std::size_t cells = model.triangles.size();
+  for (const Model::Shell& shell : model.shells) {
+    const ShellSection& section = shell.section;
+    const auto first = static_cast<std::size_t>(model.bodies[static_cast<std::size_t>(shell.body)].first_triangle);
+    for (int t = 0; t < section.triangles(); ++t) {
+      const Resultants resultants = section.resultants(t, x);
+      for (const bool top : {false, true}) {
+        const std::size_t cell = first + static_cast<std::size_t>(t + (top ? section.triangles() : 0));
+        put(fields, "N", cells, cell, resultants.n);
+        put(fields, "M", cells, cell, resultants.m);
+        put(fields, "Q", cells, cell, resultants.q);
+        for (int k = 0; k < section.layers(); ++k) {
+          const LayerState state = section.state(t, k, top ? 1 : -1, x);
+          put(fields, "stress_" + std::to_string(k), cells, cell, state.stress);
+          put(fields, "stretches_" + std::to_string(k), cells, cell, state.stretches);
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 
-SurfaceFields::SurfaceFields(const Model& model) : model_(model), rest_(model.triangles.size(), nullptr) {
+SurfaceFields::SurfaceFields(const Model& model, bool stresses)
+    : model_(model), stresses_(stresses), rest_(model.triangles.size(), nullptr) {
   std::map<Triangle, int> numbers;
   for (std::size_t i = 0; i < model.triangles.size(); ++i) numbers.emplace(model.triangles[i], static_cast<int>(i));
   const auto take_rest = [&](const std::vector<RestTriangle>& triangles) {
@@ -96,8 +132,10 @@ Frame SurfaceFields::frame(const State& state, double time) const {
       if (!multipliers.segment(row, rows).isZero(0)) active.values[triangle] = 1;
     }
   }
-  return {
+  Frame frame{
       time, state.positions, model_.triangles, {velocity, body, displacement}, {sigma_max, sigma_min, tension, active}};
+  if (stresses_) add_stresses(model_, state.positions, frame.cell_fields);
+  return frame;
 }
 
 }  // namespace taut

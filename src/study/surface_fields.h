@@ -18,10 +18,15 @@ namespace taut {
 ///
 /// The tension is the largest eigenvalue of 2 Lambda for limits of matrix form, the largest multiplier for those of
 /// singular values; 0 without a limit.
+///
+/// Of thick shells, in the axes of ShellSection: N (N11, N22, N12 in N/m), M (M11, M22, M12 in N) and Q (Q1, Q2 in
+/// N/m), the same on the bottom and the top triangle; of each layer k stress_k (six, in Voigt's order, Pa) and
+/// stretches_k (three, the largest first), on the bottom triangle at the bottom of the layer and on the top one at its
+/// top. NaN elsewhere.
 class SurfaceFields {
  public:
-  /// The model is borrowed.
-  explicit SurfaceFields(const Model& model);
+  /// The model is borrowed. With `stresses` a frame has those of thick shells too.
+  explicit SurfaceFields(const Model& model, bool stresses = false);
 
   Frame frame(const State& state, double time) const;
   /// The largest singular value of each triangle at these positions.
@@ -38,6 +43,7 @@ class SurfaceFields {
   std::vector<Vector2> stretches(const Vector& positions) const;
 
   const Model& model_;
+  bool stresses_;
   std::vector<const RestTriangle*> rest_;  // of each triangle of the model, or null
   std::vector<Limit> limits_;
   std::optional<double> upper_limit_;

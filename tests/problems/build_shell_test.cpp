@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <fstream>
 
 #include "constraints/strain_limit.h"
@@ -160,8 +161,75 @@ TEST_F(BuildShell, PressesOnTheSurfaceThatIsNamed) {
     EXPECT_LE((forces.segment<3>(3 * (2 * 4 + level)) - Vector3(0, 0, 3 * 2.0 / 3)).norm(), 1e-12) << surface;
     for (Index v = 0; v < 9; ++v) EXPECT_TRUE(forces.segment<3>(3 * (2 * v + 1 - level)).isZero(0)) << surface;
   }
-  EXPECT_THAT(error(fine, pressed("bottom", "")),
-              testing::HasSubstr("found a boundary vertex of s that can move (0, along x)"));
+}
+
+TEST_F(BuildShell, LagsAPressureWithoutAPotentialAndSaysSo) {
+  const auto built = model(single, R"("loads": {"l": {"type": "pressure", "body": "s", "pressure": 3}})");
+  EXPECT_TRUE(built->pressures.empty());
+  ASSERT_EQ(built->lagged_loads.size(), 1u);
+  EXPECT_EQ(built->notes.at(0),
+            "pressure l has no potential, because the boundary can move (vertex 0 of s along x): in "
+            "each step its forces are those of the step's start");
+  // Turned by a quarter about y, it pushes along x.
+  Vector turned = built->positions, forces = Vector::Zero(turned.size());
+  for (Index v = 0; v < turned.size(); v += 3)
+    turned.segment<3>(v) = Vector3(turned[v + 2], turned[v + 1], -turned[v]).eval();
+  built->lagged_loads[0].forces(turned, Vector::Zero(turned.size()), forces);
+  EXPECT_LE((total(forces) - Vector3(6, 0, 0)).norm(), 1e-12);
+  EXPECT_TRUE(forces.segment<3>(0).isZero(0));  // it is on the top
+}
+
+TEST_F(BuildShell, KeepsADeadPressureAsItIsAtRest) {
+  const auto built =
+      model(single, R"("loads": {"l": {"type": "pressure", "body": "s", "pressure": 3, "follows": false}})");
+  EXPECT_TRUE(built->notes.empty());
+  EXPECT_LE((total(forces_of(*built->dead_loads.at(0), 2 * built->positions)) - Vector3(0, 0, 6)).norm(), 1e-12);
+}
+
+TEST_F(BuildShell, TakesAThicknessPerVertex) {
+  const std::string rest = R"(, "density": 1, )" + solid;
+  const auto values = [&](const std::string& list) {
+    return grid + R"(, "vertex_thickness": {"values": [)" + list + "]}" + rest;
+  };
+  const auto built = model(values("0.1, 0.2, 0.3, 0.1, 0.2, 0.3"));
+  EXPECT_EQ(built->positions.segment<3>(3 * 5), Vector3(2, 0, 0.15));  // the top of vertex 2
+  EXPECT_THAT(error(values("1, 2")),
+              testing::HasSubstr("found 2 thicknesses, allowed: one for each of the 6 vertices"));
+  EXPECT_THAT(error(values("1, 2, 0")), testing::HasSubstr("/bodies/s/vertex_thickness/values/2: found 0"));
+  EXPECT_EQ(error(single + R"(, "vertex_thickness": {"values": [1]})"),
+            "/bodies/s/thickness: found \"thickness\", allowed: either \"vertex_thickness\" or this");
+  EXPECT_THAT(error(grid + R"(, "vertex_thickness": {"property": "t"})" + rest),
+              testing::HasSubstr("found a property of a grid"));
+}
+
+TEST_F(BuildShell, TakesAThicknessFromAPropertyOfTheMesh) {
+  std::ofstream(path("m.ply")) << "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                                  "property float z\nproperty float t\nelement face 1\nproperty list uchar int "
+                                  "vertex_indices\nend_header\n0 0 0 0.5\n1 0 0 0.25\n0 1 0 1\n3 0 1 2\n";
+  const std::string layers = R"(, "layers": [{"thickness": 1, "density": 1, )" + solid +
+                             R"(}, {"thickness": 3, "density": 1, )" + solid + "}]";
+  const std::string from = R"("mesh": {"file": "m.ply"}, "vertex_thickness": {"property": ")";
+  const auto built = model(from + R"(t"})" + layers);
+  for (int v = 0; v < 3; ++v) {
+    const double thickness = std::array{0.5, 0.25, 1.0}[v];
+    for (int level = 0; level < 3; ++level)
+      EXPECT_NEAR(built->positions[3 * (3 * v + level) + 2], thickness * (std::array{0.0, 0.25, 1.0}[level] - 0.5),
+                  1e-15);
+  }
+  EXPECT_THAT(error(from + R"(u"})" + layers), testing::HasSubstr("its vertices have no property \"u\""));
+}
+
+TEST_F(BuildShell, RefusesSurfacesThatCross) {
+  // A strip folded over itself: two sheets, 0.1 m apart, joined by a wall at x = 1.
+  std::ofstream(path("u.obj")) << "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 1 0 0.1\nv 1 1 0.1\nv 0 0 0.1\nv 0 1 0.1\n"
+                                  "f 1 3 4\nf 1 4 2\nf 3 5 6\nf 3 6 4\nf 5 7 8\nf 5 8 6\n";
+  const auto thick = [&](const std::string& t) {
+    return R"("mesh": {"file": "u.obj"}, "density": 1, "thickness": )" + t + ", " + solid;
+  };
+  EXPECT_EQ(error(thick("0.04")), "no error");
+  EXPECT_THAT(error(thick("0.11")),
+              testing::MatchesRegex("/bodies/s/mesh: s: the .* of face [0-9]+ goes through the .* of "
+                                    "face [0-9]+ near vertex [0-9]+"));
 }
 
 TEST_F(BuildShell, TurnsAnEdgeByTheWholeMoment) {
@@ -199,8 +267,9 @@ TEST_F(BuildShell, CorrectsShearOfASinglePrismOnly) {
 }
 
 TEST_F(BuildShell, RefusesWhatItCannotMean) {
-  EXPECT_EQ(error(grid + R"(, "density": 1, )" + solid),
-            "/bodies/s/thickness: missing, allowed: a number > 0, in m (or \"layers\", or \"top\")");
+  EXPECT_EQ(
+      error(grid + R"(, "density": 1, )" + solid),
+      "/bodies/s/thickness: missing, allowed: a number > 0, in m (or \"layers\", \"top\" or \"vertex_thickness\")");
   EXPECT_EQ(error(grid + R"(, "density": 1, "thickness": 1)"),
             "/bodies/s/material: missing, allowed: an object (or \"layers\")");
   EXPECT_EQ(error(single + R"(, "bending": {"stiffness": 1})"),

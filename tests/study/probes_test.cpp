@@ -3,12 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 
 #include "problems/read_scene.h"
 #include "study/check.h"
+#include "study/frame_files.h"
 #include "study/records_json.h"
 #include "study/run.h"
 #include "tests/files/temporary_folder.h"
@@ -183,6 +185,93 @@ TEST_F(LoadParts, StopWhereTheSmallestPartIsNotSolved) {
   const RunSummary summary = solve(scene);
   EXPECT_EQ(summary.status, Status::limit_point);
   EXPECT_THAT(summary.message, HasSubstr("the load stops at 0 of the whole, a larger one is not solved"));
+}
+
+/// A snap takes more Newton systems than a step towards the limit, so that few of them stop the load there.
+TEST_F(LoadParts, StopAtALimitPointWhereNoSnapIsAllowed) {
+  const auto arch = std::filesystem::path(TAUT_CATALOGUE) / "validation" / "snap_through.json";
+  const RunSummary stopped = solve(read_scene(arch, {{"solver.max_newton", "8"}}));
+  EXPECT_EQ(stopped.status, Status::limit_point);
+  const std::string before = "the load stops at ";
+  const std::size_t at = stopped.message.find(before);
+  ASSERT_NE(at, stopped.message.npos) << stopped.message;
+  EXPECT_NEAR(std::stod(stopped.message.substr(at + before.size())), 1 / 1.3, 0.015 / 1.3);
+  EXPECT_GT(value(stopped, "z"), 0);  // still on this side
+  const RunSummary snapped = solve(read_scene(arch));
+  EXPECT_EQ(snapped.status, Status::solved);
+  EXPECT_LT(value(snapped, "z"), -0.1);
+}
+
+class ShellProbes : public Probes {
+ protected:
+  /// A cantilever of 10 m x 1 m x 0.5 m, EI = 1, under a small force at its end.
+  Scene cantilever(const Overrides& overrides = {}) const {
+    std::ofstream(path("strip.json")) << R"({
+      "format": 1, "time": {"integrator": "static", "steps": 1, "frequencies": 2},
+      "bodies": {"s": {"model": "thick_shell", "mesh": {"grid": {"size": [10, 1], "cells": [20, 1]}}, "mass": "consistent",
+        "thickness": 0.5, "density": 1, "material": {"law": "stvk", "young_modulus": 96, "poisson_ratio": 0}}},
+      "constraints": {
+        "end": {"type": "pin", "body": "s", "select": {"edges": ["x0"]}},
+        "plane": {"type": "pin", "body": "s", "select": {"all": true}, "axes": "y"}},
+      "loads": {"f": {"type": "edge_load", "body": "s", "select": {"edges": ["x1"]}, "force_per_length": [0, 0, 1e-5]}},
+      "solver": {"tolerance": {"stationarity": 1e-7}},
+      "output": {"stresses": true, "probes": {
+        "m": {"quantity": "m11", "select": {"edges": ["x0"]}}, "q": {"quantity": "q1", "select": {"edges": ["x0"]}},
+        "n": {"quantity": "n11", "select": {"edges": ["x0"]}},
+        "low": {"quantity": "stress_11", "select": {"edges": ["x0"]}, "surface": "bottom"},
+        "high": {"quantity": "stress_11", "select": {"edges": ["x0"]}},
+        "long": {"quantity": "stretch_1", "select": {"edges": ["x0"]}, "surface": "bottom"},
+        "f1": {"quantity": "frequency"}, "f2": {"quantity": "frequency", "mode": 2}}}})";
+    return read_scene(path("strip.json"), overrides);
+  }
+};
+
+TEST_F(ShellProbes, AreTheResultantsThatStaticsAsks) {
+  const RunSummary summary = solve(cantilever());
+  ASSERT_EQ(summary.status, Status::solved) << summary.message;
+  // In the middle of the first cell; the end is lifted, so that the bottom is stretched.
+  const double moment = -1e-5 * (10 - 0.25), stress = -6 * moment / 0.25;
+  EXPECT_NEAR(value(summary, "m"), moment, 2e-3 * std::abs(moment));
+  EXPECT_NEAR(value(summary, "q"), 1e-5, 2e-7);
+  EXPECT_NEAR(value(summary, "n"), 0, 1e-7);
+  EXPECT_NEAR(value(summary, "low"), stress, 2e-3 * stress);
+  EXPECT_NEAR(value(summary, "high"), -stress, 2e-3 * stress);
+  EXPECT_NEAR(value(summary, "long") - 1, stress / 96, 2e-3 * stress / 96);
+}
+
+TEST_F(ShellProbes, HaveNaturalFrequenciesAfterTheLastStep) {
+  const RunSummary summary = solve(cantilever());
+  const double unit = std::sqrt(1 / 0.5) / (2 * M_PI * 100);  // Timoshenko's beam of L/t = 20
+  EXPECT_NEAR(value(summary, "f1"), 3.51025 * unit, 0.01 * 3.51025 * unit);
+  EXPECT_NEAR(value(summary, "f2"), 21.7861 * unit, 0.01 * 21.7861 * unit);
+  ASSERT_EQ(summary.modes.size(), 2u);
+  EXPECT_LE(summary.modes[1].residual, 1e-8);
+  EXPECT_THAT(summary.files, Contains("modes/strip_mode_00002.vtu"));
+  const CheckReport report = check_run(path("out"), {});
+  EXPECT_EQ(report.verdict(), CheckVerdict::within) << testing::PrintToString(report.findings);
+}
+
+TEST_F(ShellProbes, StallWhereThereAreFewerModesThanAreAskedFor) {
+  const RunSummary summary = solve(cantilever({{"time.frequencies", "1000"}}));
+  EXPECT_EQ(summary.status, Status::stalled);
+  EXPECT_THAT(summary.message, HasSubstr("expected a count from 1 to"));
+}
+
+TEST_F(ShellProbes, WriteTheSameResultantsToFrames) {
+  const RunSummary summary = solve(cantilever());
+  const Frame frame = read_frame(path("out/frames/strip_00001.vtu"));
+  const auto field = [&](const std::string& name) {
+    const auto found = std::find_if(frame.cell_fields.begin(), frame.cell_fields.end(),
+                                    [&](const Field& f) { return f.name == name; });
+    return found == frame.cell_fields.end() ? Field{} : *found;
+  };
+  ASSERT_EQ(field("M").values.size(), 3 * 80u);
+  // The two triangles of the first cell are the only ones that touch the clamped edge.
+  EXPECT_NEAR((field("M").values[0] + field("M").values[3]) / 2, value(summary, "m"), 1e-12);
+  EXPECT_EQ(field("M").values[0], field("M").values[3 * 40]);  // the same on the top
+  EXPECT_NEAR((field("stress_0").values[0] + field("stress_0").values[6]) / 2, value(summary, "low"), 1e-10);
+  EXPECT_EQ(field("Q").components, 2);
+  EXPECT_EQ(field("stretches_0").components, 3);
 }
 
 }  // namespace

@@ -5,13 +5,15 @@ import json
 import math
 import pathlib
 
+import stvk_beam
+
 HERE = pathlib.Path(__file__).resolve().parent
 E = 1e9  # Pa, where a result does not depend on it
 
 
-def write(name, description, look_for, steps, body, constraints, loads, probes, stationarity=None):
+def write(name, description, look_for, steps, body, constraints, loads, probes, stationarity=None, **time):
     document = {"format": 1, "name": name, "description": description, "look_for": look_for}
-    document["time"] = {"integrator": "static", "steps": steps}
+    document["time"] = {"integrator": "static", "steps": steps, **time}
     document["bodies"] = {"shell": {"model": "thick_shell", **body}}
     document["constraints"] = {k: {"type": "pin", "body": "shell", **v} for k, v in constraints.items()}
     document["loads"] = {k: {"body": "shell", **v} for k, v in loads.items()}
@@ -23,6 +25,11 @@ def write(name, description, look_for, steps, body, constraints, loads, probes, 
 def probe(quantity, select, factor, value, source, surface="both", **tolerance):
     expected = {"value": value, **tolerance, "source": source}
     return {"quantity": quantity, "select": select, "surface": surface, "factor": factor, "expected": expected}
+
+
+def resultant(quantity, select, factor, value, source, **tolerance):
+    """A probe of what has no surface."""
+    return {k: v for k, v in probe(quantity, select, factor, value, source, **tolerance).items() if k != "surface"}
 
 
 def isotropic(young, poisson, law="stvk"):
@@ -42,6 +49,7 @@ UNIFORM = {("simply_supported", 10): 0.004272842263, ("simply_supported", 100): 
            ("simply_supported", 1000): 0.004062373717, ("clamped", 10): 0.001504625612,
            ("clamped", 100): 0.001267856681, ("clamped", 1000): 0.001265344503}
 POINT = {"simply_supported": 0.01160083977, "clamped": 0.005612}  # w D/(P a^2) by Kirchhoff's theory
+MOMENT = {"simply_supported": 0.0478863, "clamped": 0.0229051}  # M/(q a^2) in the middle, nu = 0.3 (Taylor and Govindjee 2004)
 
 
 def lift(slenderness):
@@ -63,7 +71,9 @@ def plates():
         write(f"plate_{edges}_{slenderness}", f"A square plate, {words}, a/t = {slenderness}, uniform load; a quarter.",
               note, 1, body, supports, {"load": {"type": "surface_load", "force_per_area": [0, 0, load]}},
               {"w": probe("displacement_z", CENTRE, stiffness / load, value,
-                          "w D/(q a^4), Mindlin's theory with k = 5/6 and hard supports, series", relative=0.01)},
+                          "w D/(q a^4), Mindlin's theory with k = 5/6 and hard supports, series", relative=0.01),
+               **({"moment": resultant("m11", CENTRE, 1 / load, MOMENT[edges], "M/(q a^2) in the middle, Kirchhoff's theory, series",
+                                       relative=0.01)} if slenderness == 100 else {})},
               STATIONARITY.get(slenderness))
         if slenderness == 10:
             continue
@@ -250,6 +260,151 @@ def elastica():
                "z": probe("z", TIP, 0.1, deflection, source, absolute=0.005)}, 1e-8)
 
 
+def thick_elastica():
+    """Where shear, stretch and the bending law of St. Venant and Kirchhoff count."""
+    for slenderness in (10, 20):
+        for alpha in (1, 2, 4, 10):
+            t = 10 / slenderness
+            young = 12 / t**3
+            x, z = stvk_beam.tip_under_force(young, t, 10, alpha / 100)
+            source = "beam with shear (k = 5/6), stretch and the bending law of St. Venant and Kirchhoff (docs/theory/prism_shell.md), over L"
+            write(f"elastica_{alpha}_thick_{slenderness}",
+                  f"A cantilever, L/t = {slenderness}, under a dead end load P with P L^2/EI = {alpha}; EI = 1, nu = 0.",
+                  "Compare with the thin one: shear, stretch and the law's bending count here.", max(4, alpha),
+                  {"mesh": STRIP, "thickness": t, "density": 1, "material": isotropic(young, 0)}, HELD,
+                  {"end": {"type": "edge_load", "select": TIP, "force_per_length": [0, 0, alpha / 100]}},
+                  {"x": probe("x", TIP, 0.1, x / 10, source, absolute=0.005),
+                   "z": probe("z", TIP, 0.1, z / 10, source, absolute=0.005)}, 1e-8)
+
+
+def neo_hookean_roll_up():
+    t = 0.1
+    young, moment = 12 / t**3, 2 * math.pi / 10
+    source = "Euler's full circle, over L"
+    write("roll_up_100_neo_hookean", "A cantilever, L/t = 100, rolled up to a full circle, of neo-Hookean material; EI = 1, nu = 0.",
+          "Its bending is closer to Euler's than that of St. Venant and Kirchhoff (roll_up_100).", 20,
+          {"mesh": STRIP, "thickness": t, "density": 1, "material": isotropic(young, 0, "neo_hookean")}, HELD,
+          {"moment": {"type": "end_moment", "select": TIP, "moment_per_length": [0, -moment, 0]}},
+          {"x": probe("x", TIP, 0.1, 0.0, source, absolute=0.005), "z": probe("z", TIP, 0.1, 0.0, source, absolute=0.005)}, 1e-7)
+
+
+# --- natural frequencies ----------------------------------------------------------------------------------------------
+
+
+def frequencies():
+    """Square plates of side 1 and strips: f = factor/(2 pi a^2) sqrt(D/(rho t))."""
+    t, density = 0.01, 1000
+    stiffness = E * t**3 / (12 * (1 - 0.3**2))
+    unit = math.sqrt(stiffness / (density * t)) / (2 * math.pi)
+    edges = {"edge_x": {"select": {"edges": ["x0", "x1"]}, "axes": "yz"}, "edge_y": {"select": {"edges": ["y0", "y1"]}, "axes": "xz"}}
+    around = {"edges": {"select": {"boundary": True}, "axes": "xyz"}}
+    side = {"edges": {"select": {"edges": ["x0"]}, "axes": "xyz"}}
+    for name, words, supports, first, factors in (
+            ("simply_supported", "simply supported", edges, 1, (19.7392088, 49.3480220, 49.3480220, 78.9568352)),
+            ("clamped", "clamped", around, 1, (35.9851911, 73.3938455, 73.3938455, 108.2165017)),
+            ("cantilever_plate", "clamped along one edge", side, 1, (3.4710134, 8.5063308, 21.2841777, 27.1987553)),
+            ("free_plate", "free; the first six modes are rigid", {}, 7, (13.4681974, 19.5961374, 24.2702009))):
+        probes = {f"f{first + k}": frequency(first + k, 1 / unit, factor, "omega a^2 sqrt(rho t/D), Kirchhoff's theory, Ritz's series")
+                  for k, factor in enumerate(factors)}
+        write(f"frequencies_{name}", f"The lowest natural frequencies of a square plate, {words}; a/t = 100, consistent mass.",
+              "The shapes are in modes/.", 1,
+              {"mesh": {"grid": {"size": [1, 1], "cells": [48, 48]}}, "thickness": t, "density": density, "mass": "consistent",
+               "material": isotropic(E, 0.3)}, supports, {}, probes, frequencies=first + len(factors) - 1)
+    for slenderness, factors in ((100, {1: 3.51578379, 2: 22.02437983, 3: 61.62978159}),
+                                 (10, {1: 3.49314111, 2: 21.09162421, 4: 55.99840084})):  # its mode 3 stretches
+        t = 10 / slenderness
+        unit = math.sqrt(1 / (density * t)) / (2 * math.pi * 100)
+        probes = {f"f{mode}": frequency(mode, 1 / unit, factor, "omega L^2 sqrt(rho A/EI), Timoshenko's beam, k = 5/6")
+                  for mode, factor in factors.items()}
+        write(f"frequencies_cantilever_{slenderness}", f"The lowest natural frequencies of a cantilever, L/t = {slenderness}; EI = 1, nu = 0, consistent mass.",
+              "The strip moves in its plane only. The shapes are in modes/.", 1,
+              {"mesh": STRIP, "thickness": t, "density": density, "mass": "consistent", "material": isotropic(12 / t**3, 0)}, HELD, {},
+              probes, frequencies=max(factors))
+
+
+    prestressed_frequencies(density)
+
+
+def prestressed_frequencies(density):
+    """A strip on hinges under a force N along it: omega_n^2 = (n pi/L)^4 EI/(rho A) (1 + N L^2/(n^2 pi^2 EI))."""
+    t = 0.1
+    unit = math.sqrt(1 / (density * t)) / (2 * math.pi * 100)
+    layer = {"thickness": t, "density": density, "material": isotropic(12 / t**3, 0), "prisms": 2}
+    hinges = {"hinge": {"select": {"edges": ["x0"]}, "axes": "xz", "surface": "mid"},
+              "roller": {"select": {"edges": ["x1"]}, "axes": "z", "surface": "mid"}, "plane": HELD["plane"]}
+    for name, share, words in (("stretched", 2.0, "stretched by twice"), ("compressed", -0.5, "compressed by half of")):
+        factors = {n: (n * math.pi) ** 2 * math.sqrt(1 + share / n**2) for n in (1, 2)}
+        write(f"frequencies_{name}", f"The lowest natural frequencies of a strip on hinges, L/t = 100, {words} its buckling load; EI = 1, nu = 0, consistent mass.",
+              "Compare the two: stress changes frequencies.", 1, {"mesh": STRIP, "layers": [layer], "mass": "consistent"}, hinges,
+              {"pull": {"type": "edge_load", "select": TIP, "force_per_length": [share * math.pi**2 / 100, 0, 0]}},
+              {f"f{n}": frequency(n, 1 / unit, factor, "omega L^2 sqrt(rho A/EI), Euler and Bernoulli's beam under a force along it")
+               for n, factor in factors.items()}, frequencies=2)
+
+
+def frequency(mode, factor, value, source):
+    return {"quantity": "frequency", "mode": mode, "factor": factor, "expected": {"value": value, "relative": 0.01, "source": source}}
+
+
+# --- snap-through -----------------------------------------------------------------------------------------------------
+
+SPAN, RISE, ARCH_T = 10, 0.11, 0.1  # a low arch z = RISE sin(pi x/SPAN), EI = 1 per width
+
+
+def arch_mesh(cells=40):
+    obj("arch.obj", f"A low arch, {cells} x 2 cells", *grid(cells, 2, lambda x, y: (SPAN * x, 0.5 * y, RISE * math.sin(math.pi * x))))
+
+
+def arch_problem(name, description, look_for, steps, constraints, loads, probes, stationarity):
+    cells = 40
+    ends = {"vertices": column(cells, 2, 0)["vertices"] + column(cells, 2, cells)["vertices"]}
+    layer = {"thickness": ARCH_T, "density": 1, "material": isotropic(12 / ARCH_T**3, 0), "prisms": 2}
+    supports = {"hinges": {"select": ends, "axes": "xz", "surface": "mid"}, "plane": {"select": {"all": True}, "axes": "y"}}
+    write(name, description, look_for, steps, {"mesh": {"file": "arch.obj"}, "layers": [layer]}, {**supports, **constraints}, loads, probes,
+          stationarity, halvings=8)
+
+
+def sine_load(a):
+    """The amplitude of the sinusoidal load that holds the arch at the amplitude a (shallow arches, one mode: exact)."""
+    area = 12 / ARCH_T**2
+    return (math.pi / SPAN) ** 4 * ((RISE - a) + area / 4 * (RISE**2 - a**2) * a)
+
+
+def point_load(height):
+    """The load per width in the middle that holds the middle at this height, by the series of shallow arches: with
+    nu = N L^2/(pi^2 EI) and p = 2 P L^3/(EI pi^4), a_n = (n^4 e_n - p s_n)/(n^4 + nu n^2) and 4 nu I/A = sum n^2 a_n^2 - e^2."""
+    odd = range(1, 200, 2)
+
+    def state(nu):
+        p = (RISE / (1 + nu) - height) / sum(1 / (n**4 + nu * n**2) for n in odd)
+        a = [((RISE if n == 1 else 0) - p * (1 if n % 4 == 1 else -1) / n**4) / (1 + nu / n**2) for n in odd]
+        return p, sum((n * x) ** 2 for n, x in zip(odd, a)) - RISE**2 - nu * ARCH_T**2 / 3
+    low, high = -3.99, -0.01  # below -4 it would buckle to the side
+    for _ in range(100):
+        middle = (low + high) / 2
+        low, high = (middle, high) if state(middle)[1] > 0 else (low, middle)
+    return state(low)[0] * math.pi**4 / (2 * SPAN**3)
+
+
+def snap_through():
+    arch_mesh()
+    middle = column(40, 2, 20)
+    limit = sine_load(math.sqrt((RISE**2 - ARCH_T**2 / 3) / 3))
+    low, high = -4 * RISE, -RISE / 2
+    for _ in range(100):
+        a = (low + high) / 2
+        low, high = (a, high) if sine_load(a) > 1.3 * limit else (low, a)
+    source = "shallow arch, one mode"
+    arch_problem("snap_through", "A low hinged arch under a sinusoidal load that grows to 1.3 of its limit load.",
+                 "Each load step is a minimisation: behind the limit point it ends in the state on the other side.", 13, {},
+                 {"load": {"type": "surface_load", "force_per_area": [0, 0, -1.3 * limit], "half_waves": [[1 / SPAN, 0, 0]]}},
+                 {"z": probe("z", middle, 1, low, source, surface="mid", relative=0.01)}, 1e-7)
+    arch_problem("snap_through_displacement", "The same arch, its middle moved down to the level of its hinges.",
+                 "Displacement control: the force in probes.csv rises to its limit and falls again.", 22,
+                 {"push": {"select": middle, "axes": "z", "surface": "mid",
+                           "motion": {"keyframes": [{"time": 0}, {"time": 1, "translation": [0, 0, -RISE]}]}}}, {},
+                 {"force": probe("force_z", middle, -2, point_load(0), "force per width, shallow arch, series", relative=0.01)}, 1e-7)
+
+
 def slit_annular(radial=16, around=128):
     def place(x, y):
         angle, radius = -2 * math.pi * x, 6 + 4 * y
@@ -273,4 +428,8 @@ if __name__ == "__main__":
     cook()
     roll_up()
     elastica()
+    thick_elastica()
+    neo_hookean_roll_up()
+    frequencies()
+    snap_through()
     slit_annular()
