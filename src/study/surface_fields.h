@@ -36,6 +36,7 @@ class SurfaceFields {
     std::vector<int> triangles;  // of each element
   };
   std::vector<Vector2> stretches(const Vector& positions) const;
+  Field coupling_force(const State& state) const;
 
   const Model& model_;
   std::vector<const RestTriangle*> rest_;  // of each triangle of the model, or null
