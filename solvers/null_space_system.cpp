@@ -44,6 +44,7 @@ SparseMatrix without_columns(const SparseMatrix& matrix, const std::vector<int>&
 
 NullSpaceSystem::NullSpaceSystem(const Assembly& assembly, const EqualityRows& equalities, const Problem& problem)
     : assembly_(assembly),
+      fixed_(problem.fixed_variables),
       basis_(basis_of(problem)),
       rows_(without_columns(equalities.rows(), problem.fixed_variables)) {
   if (rows_.rows() == 0) return;
@@ -74,6 +75,7 @@ void NullSpaceSystem::solve(const Vector& gradient, const Vector& violation, Vec
   }
   const Vector along = basis_ * cholesky_.solve(basis_.transpose() * force);
   step -= along;
+  for (const int variable : fixed_) step[variable] = 0;  // the basis has round-off there
   multiplier_step.resize(rows_.rows());
   if (rows_.rows() > 0) multiplier_step = -normal_.solve(rows_ * (force - hessian * along));
 }

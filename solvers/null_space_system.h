@@ -23,6 +23,7 @@ class NullSpaceSystem final : public NewtonSystem {
 
  private:
   const Assembly& assembly_;
+  std::vector<int> fixed_;
   SparseMatrix basis_, reduced_;
   SparseMatrix rows_;  // the equalities without the columns of fixed variables
   Eigen::SimplicialLLT<SparseMatrix> cholesky_;
