@@ -80,6 +80,7 @@ std::unique_ptr<Solver> build_augmented_lagrangian(const Scene& scene, int threa
   options.penalty_growth = scene.solver.penalty_growth;
   options.fixed_penalty = scene.solver.fixed_penalty;
   options.warm_multipliers = scene.solver.warm_multipliers;
+  options.conjugate_gradients = scene.solver.conjugate_gradients;
   options.equalities = scene.solver.equalities;
   options.null_space = scene.solver.method == scene::SolverMethod::null_space;
   options.inner_tolerance_factor = scene.solver.inner_tolerance_factor;

@@ -66,7 +66,8 @@ struct CoupledSheet {
 AugmentedLagrangianOptions options_of(const std::string& kind) {
   AugmentedLagrangianOptions options;
   options.tolerances = {1e-11, 1e-13, 1e-10};
-  options.null_space = kind == "null_space";
+  options.null_space = kind == "null_space" || kind == "conjugate_gradients";
+  options.conjugate_gradients = kind == "conjugate_gradients";
   if (kind == "penalised") options.equalities = EqualityForm::penalised;
   return options;
 }
@@ -173,6 +174,16 @@ TEST_P(EverySystem, WorksUnderAStrainLimit) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, EverySystem, testing::Values("quasi_definite", "penalised", "null_space"),
                          [](const auto& instance) { return instance.param; });
+
+TEST(ConjugateGradients, ReachTheMinimumOfTheFactorisedNullSpace) {
+  const CoupledSheet sheet;
+  AugmentedLagrangian reference(options_of("null_space")), solver(options_of("conjugate_gradients"));
+  const Result expected = reference.solve(sheet.owned.problem, {}, {}),
+               found = solver.solve(sheet.owned.problem, {}, {});
+  EXPECT_EQ(found.status, Status::solved) << found.message;
+  EXPECT_LE((found.x - expected.x).norm(), 1e-9);
+  EXPECT_LE((found.multipliers[0] - expected.multipliers[0]).norm(), 1e-7 * expected.multipliers[0].norm());
+}
 
 TEST(EqualityRows, PutMultipliersBehindThoseOfConstraintsAndTakeThemBack) {
   const CoupledSheet sheet;
