@@ -66,17 +66,21 @@ void add_material(const Scene& scene, const scene::Body& body, const BodyShape& 
 std::unique_ptr<Solver> build_augmented_lagrangian(const Scene& scene, int threads) {
   AugmentedLagrangianOptions options;
   options.tolerances = scene.solver.tolerance;
-  // Measured: with obstacles the path takes 2 to 7 times the linear solves of the loop of multiplier updates.
+  // Measured: with obstacles the path takes 2 to 7 times the linear solves of the loop of multiplier updates; with
+  // covers, whose wrinkles make the curvature indefinite, up to 14 times, most of them until it gives up.
   const bool obstacles =
       std::any_of(scene.constraints.begin(), scene.constraints.end(), [](const scene::Constraint& constraint) {
         return std::holds_alternative<scene::HalfSpace>(constraint.kind) ||
                std::holds_alternative<scene::Sphere>(constraint.kind);
       });
-  options.central_path.enabled = scene.solver.central_path && !obstacles;
+  const bool covers = std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                  [](const scene::Body& body) { return body.cover.has_value(); });
+  options.central_path.enabled = scene.solver.central_path && !obstacles && !covers;
   options.penalty = scene.solver.penalty;
   options.penalty_growth = scene.solver.penalty_growth;
   options.fixed_penalty = scene.solver.fixed_penalty;
   options.warm_multipliers = scene.solver.warm_multipliers;
+  options.conjugate_gradients = scene.solver.conjugate_gradients;
   options.equalities = scene.solver.equalities;
   options.null_space = scene.solver.method == scene::SolverMethod::null_space;
   options.inner_tolerance_factor = scene.solver.inner_tolerance_factor;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -7,7 +8,6 @@
 #include "constraints/coupling.h"
 #include "energies/foundation.h"
 #include "geometry/measures.h"
-#include "linalg/null_space.h"
 #include "problems/build_parts.h"
 #include "problems/cover_shape.h"
 
@@ -64,24 +64,30 @@ void note_wavelength(const scene::Body& shell, const scene::Body& cover, const T
       cover.name, *length, 2 * edge, 0.5 * *length, *length / 8));
 }
 
-/// Coupling equations that pins decide alone: how many, and whether they contradict each other.
+/// Coupling equations that pins decide alone: how many, and whether they contradict each other. Each axis has its own.
 void note_redundance(const LinearEqualities& equal, Model& model) {
-  SparseMatrix free = equal.rows;
-  Vector held_start = Vector::Zero(equal.rows.cols()), held_end = held_start;
+  Vector is_free = Vector::Ones(equal.rows.cols()), held_start = Vector::Zero(equal.rows.cols()), held_end = held_start;
   for (const PinnedVariable& pin : model.pins) {
-    for (SparseMatrix::InnerIterator entry(free, pin.variable); entry; ++entry) entry.valueRef() = 0;
+    is_free[pin.variable] = 0;
     held_start[pin.variable] = pin.value(0);
     held_end[pin.variable] = pin.value(1);
   }
-  free.prune([](Index, Index, double value) { return value != 0; });
-  const SparseMatrix dependent = null_space_basis(SparseMatrix(free.transpose()));
-  if (dependent.cols() == 0) return;
-  const auto off = [&](const Vector& held) {
-    return Vector(dependent.transpose() * (equal.rows * held - equal.values)).lpNorm<Eigen::Infinity>();
-  };
-  const double worst = std::max(off(held_start), off(held_end));
-  std::string note =
-      fmt::format("{}: pins decide {} of its {} equations", equal.name, dependent.cols(), equal.rows.rows());
+  const Vector start = equal.rows * held_start - equal.values, end = equal.rows * held_end - equal.values;
+  const SparseMatrix gram = equal.rows * is_free.asDiagonal() * SparseMatrix(equal.rows.transpose());
+  Index dependent = 0;
+  double worst = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto own = Eigen::seqN(axis, equal.rows.rows() / 3, 3);
+    const Eigen::SelfAdjointEigenSolver<Matrix> eigen(Matrix(gram)(own, own));
+    for (Index k = 0; k < eigen.eigenvalues().size(); ++k) {
+      if (eigen.eigenvalues()[k] > 1e-12 * eigen.eigenvalues().maxCoeff()) continue;
+      ++dependent;
+      for (const Vector* held : {&start, &end})
+        worst = std::max(worst, std::abs(eigen.eigenvectors().col(k).dot(Vector((*held)(own)))));
+    }
+  }
+  if (dependent == 0) return;
+  std::string note = fmt::format("{}: pins decide {} of its {} equations", equal.name, dependent, equal.rows.rows());
   if (worst > 1e-9 * equal.violation_scale)
     note += fmt::format(" and contradict them by {:.3g} m at time 0 or 1: no step can satisfy both", worst);
   model.notes.push_back(note);

@@ -251,6 +251,7 @@ struct Solver {
   int max_outer = 100;
   int max_newton = 1000;  ///< per step
   double inner_tolerance_factor = 0.5;
+  bool conjugate_gradients = false;
   EqualityForm equalities = EqualityForm::quasi_definite;
   IpoptSettings ipopt;
   NloptSettings nlopt;

@@ -294,6 +294,7 @@ class SceneReader : public ProbeReader {
     result.max_outer = json["max_outer"];
     result.max_newton = json["max_newton"];
     result.inner_tolerance_factor = json["inner_tolerance_factor"];
+    result.conjugate_gradients = json["null_space"] == "conjugate_gradients";
     result.equalities = choose<EqualityForm>(
         json["equalities"], {{"quasi_definite", EqualityForm::quasi_definite}, {"penalised", EqualityForm::penalised}});
     result.ipopt = {json["ipopt"]["max_iterations"], json["ipopt"]["warm_start"]};

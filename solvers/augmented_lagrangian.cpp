@@ -57,13 +57,13 @@ struct AugmentedLagrangian::Workspace {
   std::unique_ptr<Cholesky> cholesky;  // null with equalities or the null space
   std::unique_ptr<NewtonSystem> system;
 
-  Workspace(const Problem& problem, bool null_space, EqualityForm form, int threads)
+  Workspace(const Problem& problem, bool null_space, bool conjugate_gradients, EqualityForm form, int threads)
       : topology(problem.topology),
         slacks(problem.constraints.size() ? make_slacks(problem) : std::deque<EliminatedSlack>{}),
         equalities(problem),
         assembly(problem.size(), terms(problem), null_space ? std::vector<int>{} : problem.fixed_variables, threads) {
     if (null_space) {
-      system = std::make_unique<NullSpaceSystem>(assembly, equalities, problem);
+      system = std::make_unique<NullSpaceSystem>(assembly, equalities, problem, conjugate_gradients);
     } else if (equalities.count() > 0 && form == EqualityForm::penalised) {
       system = std::make_unique<PenalisedRowsSystem>(assembly, equalities, problem.fixed_variables, threads);
     } else if (equalities.count() > 0) {
@@ -416,7 +416,8 @@ Result AugmentedLagrangian::solve(const Problem& problem, const WarmStart& warm,
       const Stopwatch analysis_watch(analysis);
       problem.validate();
       workspace_.reset();
-      workspace_ = std::make_unique<Workspace>(problem, options_.null_space, options_.equalities, options_.threads);
+      workspace_ = std::make_unique<Workspace>(problem, options_.null_space, options_.conjugate_gradients,
+                                               options_.equalities, options_.threads);
       analysed = true;
     }
     Run run(options_, problem, budget, *workspace_);

@@ -25,6 +25,7 @@ struct AugmentedLagrangianOptions {
   /// How pins and linear equalities are kept: substituted and as rows with multipliers; or in the null space of their
   /// equations (null_space_system.h), without the central path, as a check of the former.
   bool null_space = false;
+  bool conjugate_gradients = false;  ///< in the null space: without a matrix of its own, where its factor fills in
   double fixed_penalty = 0;         ///< positive: every constraint's penalty, which then never grows and is no multiple
   bool warm_multipliers = true;     ///< start at the multipliers of the step before
   CentralPathOptions central_path;  ///< tried first; the loop of multiplier updates takes over where it fails

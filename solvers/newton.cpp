@@ -8,6 +8,10 @@
 
 namespace taut {
 
+namespace {
+const EqualityRows no_equalities;
+}  // namespace
+
 void NewtonOptions::validate() const {
   if (max_iterations < 1) throw std::invalid_argument("NewtonOptions: max_iterations must be at least 1");
   if (max_halvings < 1) throw std::invalid_argument("NewtonOptions: max_halvings must be at least 1");
@@ -45,6 +49,10 @@ Newton::Newton(Assembly& assembly, NewtonSystem& system, const EqualityRows& equ
       options_(options) {
   options_.validate();
 }
+
+Newton::Newton(Assembly& assembly, NewtonSystem& system, const std::vector<int>& fixed, int node_size,
+               NewtonOptions options)
+    : Newton(assembly, system, no_equalities, fixed, node_size, options) {}
 
 void Newton::evaluate(NewtonState& state, Counts& counts, Timings& timings) {
   const Stopwatch watch(timings.assembly);

@@ -73,6 +73,8 @@ class Newton {
   /// `fixed` are the variables that stay; all is borrowed.
   Newton(Assembly& assembly, NewtonSystem& system, const EqualityRows& equalities, const std::vector<int>& fixed,
          int node_size, NewtonOptions options);
+  /// Without linear equalities.
+  Newton(Assembly& assembly, NewtonSystem& system, const std::vector<int>& fixed, int node_size, NewtonOptions options);
 
   /// Minimises from state.x and state.multipliers (fixed variables stay) until the equalities hold and done(state);
   /// returns solved, iteration_limit, stalled,

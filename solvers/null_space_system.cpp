@@ -42,10 +42,13 @@ SparseMatrix without_columns(const SparseMatrix& matrix, const std::vector<int>&
 
 }  // namespace
 
-NullSpaceSystem::NullSpaceSystem(const Assembly& assembly, const EqualityRows& equalities, const Problem& problem)
+NullSpaceSystem::NullSpaceSystem(const Assembly& assembly, const EqualityRows& equalities, const Problem& problem,
+                                 bool conjugate_gradients)
     : assembly_(assembly),
+      fixed_(problem.fixed_variables),
       basis_(basis_of(problem)),
-      rows_(without_columns(equalities.rows(), problem.fixed_variables)) {
+      rows_(without_columns(equalities.rows(), problem.fixed_variables)),
+      conjugate_gradients_(conjugate_gradients) {
   if (rows_.rows() == 0) return;
   // The shift lets dependent rows be: their right-hand sides, where they are compatible, stay in the range.
   SparseMatrix product = rows_ * rows_.transpose();
@@ -54,11 +57,18 @@ NullSpaceSystem::NullSpaceSystem(const Assembly& assembly, const EqualityRows& e
 }
 
 bool NullSpaceSystem::factorize(double shift) {
+  shift_ = shift;
+  if (conjugate_gradients_) {
+    preconditioner_ = basis_.cwiseAbs2().transpose() * Vector(assembly_.matrix().diagonal()).cwiseMax(0);
+    preconditioner_.array() += shift;
+    const double smallest = 1e-12 * preconditioner_.maxCoeff();
+    preconditioner_ = preconditioner_.cwiseMax(smallest).cwiseInverse();
+    return preconditioner_.allFinite();
+  }
   const SparseMatrix full = assembly_.matrix().selfadjointView<Eigen::Lower>();
   reduced_ = basis_.transpose() * full * basis_;
   if (!analysed_) cholesky_.analyzePattern(reduced_);
   analysed_ = true;
-  shift_ = shift;
   cholesky_.setShift(shift);
   cholesky_.factorize(reduced_);
   return cholesky_.info() == Eigen::Success;
@@ -72,10 +82,39 @@ void NullSpaceSystem::solve(const Vector& gradient, const Vector& violation, Vec
     step = -(rows_.transpose() * normal_.solve(violation));
     force += hessian * step;
   }
-  const Vector along = basis_ * cholesky_.solve(basis_.transpose() * force);
+  const Vector along = basis_ * reduced_solution(basis_.transpose() * force);
   step -= along;
+  for (const int variable : fixed_) step[variable] = 0;  // the basis has round-off there
   multiplier_step.resize(rows_.rows());
   if (rows_.rows() > 0) multiplier_step = -normal_.solve(rows_ * (force - hessian * along));
+}
+
+Vector NullSpaceSystem::reduced_solution(const Vector& force) const {
+  if (conjugate_gradients_) return by_conjugate_gradients(force);
+  return cholesky_.solve(force);
+}
+
+/// To 1e-10 of the right-hand side.
+Vector NullSpaceSystem::by_conjugate_gradients(const Vector& right_hand_side) const {
+  const auto hessian = assembly_.matrix().selfadjointView<Eigen::Lower>();
+  Vector w = Vector::Zero(right_hand_side.size()), residual = right_hand_side;
+  Vector preconditioned = preconditioner_.cwiseProduct(residual), direction = preconditioned;
+  double energy = residual.dot(preconditioned);
+  const double enough = 1e-20 * energy;
+  for (Index iteration = 0; iteration < 10 * w.size() && energy > enough; ++iteration) {
+    const Vector moved = basis_ * direction;
+    const Vector product = basis_.transpose() * Vector(hessian * moved) + shift_ * direction;
+    const double curvature = direction.dot(product);
+    if (!(curvature > 0)) return iteration == 0 ? direction : w;
+    const double length = energy / curvature;
+    w += length * direction;
+    residual -= length * product;
+    preconditioned = preconditioner_.cwiseProduct(residual);
+    const double next = residual.dot(preconditioned);
+    direction = preconditioned + (next / energy) * direction;
+    energy = next;
+  }
+  return w;
 }
 
 NewtonSystem::Size NullSpaceSystem::size() const {

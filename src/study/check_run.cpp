@@ -230,7 +230,14 @@ bool RunCheck::checkpoint_is_finite() {
     cannot("checkpoint.bin: " + vertex_name(*model_, i / 3) + " is not finite");
     return false;
   }
-  for (std::size_t k = 0; k < state.warm.multipliers.size() && k < model_->constraints.size(); ++k) {
+  const std::size_t constraints = model_->constraints.size();
+  for (std::size_t k = constraints;
+       k < std::min(state.warm.multipliers.size(), constraints + model_->equalities.size()); ++k) {
+    if (state.warm.multipliers[k].allFinite()) continue;
+    cannot(fmt::format("checkpoint.bin: a multiplier of {} is not finite", model_->equalities[k - constraints]->name));
+    return false;
+  }
+  for (std::size_t k = 0; k < state.warm.multipliers.size() && k < constraints; ++k) {
     const Vector& multipliers = state.warm.multipliers[k];
     const Constraint& constraint = *model_->constraints[k];
     for (Index i = 0; i < multipliers.size(); ++i) {

@@ -12,8 +12,14 @@ namespace {
 
 struct Outside {
   double relative, violation;
-  const Constraint* constraint;
+  const Constraint* constraint;   // or
+  const LinearEqualities* equal;  // null: the other
   Index element;
+
+  WorstElement named() const {
+    if (equal) return {equal->name, equal->row_name(element), violation};
+    return {constraint->name(), constraint->element_name(element), violation};
+  }
 };
 
 /// Which vertices the constraint holds at.
@@ -83,17 +89,21 @@ std::vector<WorstElement> worst_elements(const Problem& problem, const Vector& x
     for (Index element = 0; element < stencils.count(); ++element) {
       stencils.gather(element, x, local.data());
       const double violation = constraint->violation(element, local.data());
-      if (violation > 0) outside.push_back({violation / constraint->violation_scale(), violation, constraint, element});
+      if (violation > 0)
+        outside.push_back({violation / constraint->violation_scale(), violation, constraint, nullptr, element});
+    }
+  }
+  for (const LinearEqualities* equal : problem.equalities) {
+    const Vector off = (equal->rows * x - equal->values).cwiseAbs();
+    for (Index row = 0; row < off.size(); ++row) {
+      if (off[row] > 0) outside.push_back({off[row] / equal->violation_scale, off[row], nullptr, equal, row});
     }
   }
   const std::size_t kept = std::min(outside.size(), static_cast<std::size_t>(count));
   std::partial_sort(outside.begin(), outside.begin() + static_cast<std::ptrdiff_t>(kept), outside.end(),
                     [](const Outside& a, const Outside& b) { return a.relative > b.relative; });
   std::vector<WorstElement> worst;
-  for (std::size_t i = 0; i < kept; ++i) {
-    const Outside& o = outside[i];
-    worst.push_back({o.constraint->name(), o.constraint->element_name(o.element), o.violation});
-  }
+  for (std::size_t i = 0; i < kept; ++i) worst.push_back(outside[i].named());
   return worst;
 }
 

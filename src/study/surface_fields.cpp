@@ -104,6 +104,17 @@ std::vector<double> SurfaceFields::largest_stretch(const Vector& positions) cons
   return largest;
 }
 
+/// What couplings pull at each vertex with, N: -A^T nu.
+Field SurfaceFields::coupling_force(const State& state) const {
+  Vector force = Vector::Zero(state.positions.size());
+  for (std::size_t k = 0; k < model_.equalities.size(); ++k) {
+    const std::size_t at = model_.constraints.size() + k;
+    if (at >= state.warm.multipliers.size()) continue;  // before the first step
+    force -= model_.equalities[k]->rows.transpose() * state.warm.multipliers[at];
+  }
+  return {"coupling_force", 3, {force.begin(), force.end()}};
+}
+
 Frame SurfaceFields::frame(const State& state, double time) const {
   const std::size_t cells = model_.triangles.size();
   const Vector moved = state.positions - model_.positions;
@@ -135,6 +146,7 @@ Frame SurfaceFields::frame(const State& state, double time) const {
   Frame frame{
       time, state.positions, model_.triangles, {velocity, body, displacement}, {sigma_max, sigma_min, tension, active}};
   if (stresses_) add_stresses(model_, state.positions, frame.cell_fields);
+  if (!model_.equalities.empty()) frame.point_fields.push_back(coupling_force(state));
   return frame;
 }
 

@@ -41,6 +41,7 @@ class SurfaceFields {
     std::vector<int> triangles;  // of each element
   };
   std::vector<Vector2> stretches(const Vector& positions) const;
+  Field coupling_force(const State& state) const;
 
   const Model& model_;
   bool stresses_;

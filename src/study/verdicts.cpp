@@ -90,6 +90,11 @@ std::vector<Verdict> PositionJudge::constraints(const Vector& x, double time) co
                                     tolerance_ * constraint->violation_scale(),
                                     [&](Index element) { return constraint->element_name(element); }));
   }
+  for (const auto& equal : model_.equalities) {
+    const Vector off = (equal->rows * x - equal->values).cwiseAbs();
+    verdicts.push_back(
+        verdict_over(equal->name, {off.begin(), off.end()}, tolerance_ * equal->violation_scale, equal->row_name));
+  }
   if (!model_.pins.empty()) verdicts.push_back(pins(x, time));
   return verdicts;
 }

@@ -28,7 +28,8 @@ class PositionJudge {
   /// to the diagonal of the scene at its start.
   PositionJudge(Model& model, double tolerance);
 
-  /// One verdict for each constraint, then one for the pins where there are any. `time` in s (static: load fraction).
+  /// One verdict for each constraint, one for each coupling, then one for the pins where there are any. `time` in s
+  /// (static: load fraction).
   std::vector<Verdict> constraints(const Vector& x, double time) const;
 
   /// Two verdicts on the faces themselves.

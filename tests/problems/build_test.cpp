@@ -84,7 +84,8 @@ Eigen::Matrix3Xd forces_of(const Energy& energy, const Vector& x) {
 /// Overrides that make a catalogue's scene small: its grid's cells in place of the shipped ones.
 Overrides small_grid(const std::string& name) {
   const Scene full = read_scene(fs::path(TAUT_CATALOGUE) / (name + ".json"));
-  const auto& grid = std::get<scene::Grid>(full.bodies.at(0).mesh);
+  if (!std::holds_alternative<scene::Grid>(full.bodies.at(0).mesh)) return {};
+  const auto& grid = std::get<scene::Grid>(full.bodies[0].mesh);
   const int across = std::min(grid.cells_x, 8);
   const int along = std::max(1, static_cast<int>(std::lround(across * grid.size.y() / grid.size.x())));
   return {{"bodies." + full.bodies[0].name + ".mesh.grid.cells",

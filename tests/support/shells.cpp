@@ -141,13 +141,12 @@ Status ShellCase::minimise(Vector& x, double tolerance, const std::vector<const 
   Cholesky cholesky(assembly.matrix(), 1);
   SubstitutedSystem system(assembly, cholesky);
   const std::vector<int> held = fixed_variables();
-  const EqualityRows no_equalities;
   NewtonState state;
   state.x = x;
   Counts counts;
   Timings timings;
   const Status status =
-      Newton(assembly, system, no_equalities, held, 3, {})
+      Newton(assembly, system, held, 3, {})
           .minimise(
               state, [&](const NewtonState& s) { return s.nodal_norm <= tolerance; }, {}, counts, timings);
   x = state.x;

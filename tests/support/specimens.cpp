@@ -8,6 +8,7 @@
 #include "constraints/strain_limit.h"
 #include "energies/dead_load.h"
 #include "energies/end_moment.h"
+#include "energies/foundation.h"
 #include "energies/hinge_bending.h"
 #include "energies/inertia.h"
 #include "energies/membrane.h"
@@ -179,6 +180,12 @@ std::vector<EnergySpecimen> energy_specimens() {
       {"bending_flat_rest", Form::other, [=] { return make_bending(mesh.vertices); }},
       {"bending_curved_rest", Form::other, [=] { return make_bending(curved); }},
       {"pressure", Form::other, [=] { return std::make_shared<Pressure>("pressure", mesh.triangles, 3.0); }},
+      {"foundation", Form::projection,
+       [] {
+         const std::vector<WinklerFoundation::Spring> springs{{0, {4, 5, 8}, {0.2, 0.5, 0.3}, 0.7},
+                                                              {2, {3, 7, 8}, {1.1, -0.1, 0}, 0.4}};
+         return std::make_shared<WinklerFoundation>("foundation", springs, 30.0);
+       }},
       {"stiffness_damping", Form::majorant, make_damping},
       {"end_moment", Form::projection,
        [] {
