@@ -63,9 +63,9 @@ SymmetricIndefinite::SymmetricIndefinite(Index size, const std::vector<int>& row
   }
   // Measured: at 0.01, the default, an indefinite matrix took 70 times as long as a quasi-definite one.
   d.mumps.cntl[0] = 1e-6;  // smallest pivot, relative to its column
-  d.icntl(8) = 0;    // no scaling: that takes longer than it saves, and who calls can do better
-  d.icntl(12) = 1;   // the usual ordering, no compression of 2x2 pivots, which would need values
-  d.icntl(14) = 50;  // per cent of memory for pivots that are delayed
+  d.icntl(8) = 0;          // no scaling: that takes longer than it saves, and who calls can do better
+  d.icntl(12) = 1;         // the usual ordering, no compression of 2x2 pivots, which would need values
+  d.icntl(14) = 50;        // per cent of memory for pivots that are delayed
   if (size == 0) return;
   d.run(analyse);
   if (d.infog(1) < 0)
