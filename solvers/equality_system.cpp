@@ -161,7 +161,10 @@ bool QuasiDefiniteSystem::factorize_penalised(double shift) {
       values_[next++] = scales_[entry.row()] * entry.value();
   }
   values_.tail(mu.size()) = -scales_.cwiseAbs2().cwiseQuotient(mu);
-  return factor_->factorize(values_) && factor_->negative_pivots() == rows().rows();
+  negative_curvatures_.reset();
+  if (!factor_->factorize(values_)) return false;
+  negative_curvatures_ = factor_->negative_pivots() - rows().rows();
+  return negative_curvatures_ == 0;
 }
 
 void QuasiDefiniteSystem::solve_penalised(Vector& step, Vector& multipliers) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "linalg/symmetric_indefinite.h"
 #include "solvers/equality_rows.h"
@@ -45,6 +46,8 @@ class EqualitySystem : public NewtonSystem {
 class QuasiDefiniteSystem final : public EqualitySystem {
  public:
   QuasiDefiniteSystem(const Assembly& assembly, const EqualityRows& equalities, const std::vector<int>& fixed);
+  /// Of the last matrix on A dx = 0; nothing where it was singular.
+  std::optional<Index> negative_curvatures() const { return negative_curvatures_; }
   Size size() const override { return {factor_->factor_flops(), factor_->factor_nonzeros(), factor_->memory_bytes()}; }
 
  private:
@@ -54,6 +57,7 @@ class QuasiDefiniteSystem final : public EqualitySystem {
   std::vector<Index> slots_;  // entries of the assembled matrix in the lower triangle
   std::vector<Index> diagonal_;
   Vector scales_, values_, right_hand_side_;
+  std::optional<Index> negative_curvatures_;
   std::unique_ptr<SymmetricIndefinite> factor_;
 };
 

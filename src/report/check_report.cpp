@@ -27,6 +27,11 @@ void print_last_step(Out out, const CheckReport& report) {
   fmt::format_to(out, "  {:<18} {:.2e}  {}\n", "stationarity", r.stationarity, r.worst_node);
   fmt::format_to(out, "  {:<18} {:.2e}\n", "feasibility", r.feasibility);
   fmt::format_to(out, "  {:<18} {:.2e}\n", "complementarity", r.complementarity);
+  if (!report.last_step->negative_curvatures) return;
+  const Index negative = *report.last_step->negative_curvatures;
+  fmt::format_to(out, "  {:<18} {}\n", "curvature",
+                 negative == 0 ? "positive in every direction left: a minimum"
+                               : fmt::format("negative in {} directions: a saddle, not a minimum", negative));
 }
 
 void print_probes(Out out, const CheckReport& report) {
@@ -114,17 +119,19 @@ Json last_step_json(const CheckReport& report) {
   const Residuals& r = step.residuals;
   Json violations = Json::object();
   for (const Violation& v : r.violations) violations[v.constraint] = {{"max", v.max}, {"where", v.where}};
-  return {{"step", step.step},
-          {"claimed_status", to_string(step.claimed)},
-          {"stationarity", r.stationarity},
-          {"stationarity_unscaled", r.stationarity_unscaled},
-          {"force_scale", r.force_scale},
-          {"worst_node", r.worst_node},
-          {"feasibility", r.feasibility},
-          {"feasibility_unscaled", r.feasibility_unscaled},
-          {"complementarity", r.complementarity},
-          {"complementarity_unscaled", r.complementarity_unscaled},
-          {"violations", violations}};
+  Json json{{"step", step.step},
+            {"claimed_status", to_string(step.claimed)},
+            {"stationarity", r.stationarity},
+            {"stationarity_unscaled", r.stationarity_unscaled},
+            {"force_scale", r.force_scale},
+            {"worst_node", r.worst_node},
+            {"feasibility", r.feasibility},
+            {"feasibility_unscaled", r.feasibility_unscaled},
+            {"complementarity", r.complementarity},
+            {"complementarity_unscaled", r.complementarity_unscaled},
+            {"violations", violations}};
+  if (step.negative_curvatures) json["negative_curvatures"] = *step.negative_curvatures;
+  return json;
 }
 
 /// A field in quotes, as commas occur in names.

@@ -28,6 +28,8 @@ struct RecomputedStep {
   int step = 0;
   Status claimed = Status::solved;  ///< in steps.jsonl
   Residuals residuals;
+  /// Directions of negative curvature (solvers/curvature.h); of problems with linear equalities only.
+  std::optional<Index> negative_curvatures{};
 };
 
 enum class CheckVerdict { within, outside, unusable };

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "problems/build.h"
+#include "solvers/curvature.h"
 #include "study/check.h"
 #include "study/examine.h"
 #include "study/frame_files.h"
@@ -266,6 +267,8 @@ void RunCheck::check_last_step() {
     result.multipliers = state.warm.multipliers;
     const StepRecord& claimed = run_.steps.at(static_cast<std::size_t>(state.step - 1));
     report_.last_step = RecomputedStep{state.step, claimed.status, residuals(problem, result)};
+    if (!problem.equalities.empty())
+      report_.last_step->negative_curvatures = negative_curvatures(problem, result, state.warm.penalties);
     Residuals& found = report_.last_step->residuals;
     name_for_people(found, problem, *model_);
     compare_claims(claimed, found, objective(problem, result.x));

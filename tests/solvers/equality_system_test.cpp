@@ -8,6 +8,7 @@
 #include "energies/dead_load.h"
 #include "energies/membrane.h"
 #include "solvers/augmented_lagrangian.h"
+#include "solvers/curvature.h"
 #include "solvers/null_space_system.h"
 #include "support/meshes.h"
 #include "support/problems.h"
@@ -183,6 +184,24 @@ TEST(ConjugateGradients, ReachTheMinimumOfTheFactorisedNullSpace) {
   EXPECT_EQ(found.status, Status::solved) << found.message;
   EXPECT_LE((found.x - expected.x).norm(), 1e-9);
   EXPECT_LE((found.multipliers[0] - expected.multipliers[0]).norm(), 1e-7 * expected.multipliers[0].norm());
+}
+
+TEST(NegativeCurvatures, AreCountedOnThePlaneThatTheEqualitiesLeave) {
+  // As above: diag(2, 2, along) on x_0 + x_1 + x_2 = 0.
+  for (const auto& [along, expected] : {std::pair(-0.5, 0), {-1.5, 1}}) {
+    OwnedProblem owned;
+    owned.problem.initial_guess = Vector::Zero(3);
+    owned.problem.node_size = 1;
+    owned.add(std::shared_ptr<const Energy>(std::make_shared<Diagonal>(Vector3(2, 2, along))));
+    LinearEqualities equal;
+    equal.rows = Matrix::Ones(1, 3).sparseView();
+    equal.values = Vector::Zero(1);
+    owned.problem.equalities = {&equal};
+    Result result;
+    result.x = Vector::Zero(3);
+    result.multipliers = {Vector::Zero(1)};
+    EXPECT_EQ(negative_curvatures(owned.problem, result, {}), expected) << along;
+  }
 }
 
 TEST(EqualityRows, PutMultipliersBehindThoseOfConstraintsAndTakeThemBack) {
