@@ -81,15 +81,18 @@ Eigen::Matrix3Xd forces_of(const Energy& energy, const Vector& x) {
   return Eigen::Map<Eigen::Matrix3Xd>(sum.data(), 3, sum.size() / 3);
 }
 
-/// Overrides that make a catalogue's scene small: its grid's cells in place of the shipped ones.
+/// Overrides that make a catalogue's scene small: fewer cells, and its cover (the body behind its shell) at ratio 2.
 Overrides small_grid(const std::string& name) {
   const Scene full = read_scene(fs::path(TAUT_CATALOGUE) / (name + ".json"));
   if (!std::holds_alternative<scene::Grid>(full.bodies.at(0).mesh)) return {};
   const auto& grid = std::get<scene::Grid>(full.bodies[0].mesh);
   const int across = std::min(grid.cells_x, 8);
   const int along = std::max(1, static_cast<int>(std::lround(across * grid.size.y() / grid.size.x())));
-  return {{"bodies." + full.bodies[0].name + ".mesh.grid.cells",
-           "[" + std::to_string(across) + ", " + std::to_string(std::min(along, 12)) + "]"}};
+  const std::string body = "bodies." + full.bodies[0].name;
+  Overrides overrides{
+      {body + ".mesh.grid.cells", "[" + std::to_string(across) + ", " + std::to_string(std::min(along, 12)) + "]"}};
+  if (full.bodies.size() > 1 && full.bodies[1].cover) overrides.emplace_back(body + ".cover.mesh.refine", "1");
+  return overrides;
 }
 
 class Catalogue : public testing::TestWithParam<std::string> {};
