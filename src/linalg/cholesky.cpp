@@ -34,7 +34,7 @@ namespace taut {
 namespace {
 
 /// Below this many unknowns a second BLAS thread costs more than it brings.
-constexpr Index blas_threads_from = 50000;
+constexpr Index blas_threads_from = 40000;
 
 struct Common {
   cholmod_common common;
