@@ -6,6 +6,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "study/residuals_json.h"
+
 namespace taut {
 namespace {
 
@@ -119,17 +121,9 @@ Json last_step_json(const CheckReport& report) {
   const Residuals& r = step.residuals;
   Json violations = Json::object();
   for (const Violation& v : r.violations) violations[v.constraint] = {{"max", v.max}, {"where", v.where}};
-  Json json{{"step", step.step},
-            {"claimed_status", to_string(step.claimed)},
-            {"stationarity", r.stationarity},
-            {"stationarity_unscaled", r.stationarity_unscaled},
-            {"force_scale", r.force_scale},
-            {"worst_node", r.worst_node},
-            {"feasibility", r.feasibility},
-            {"feasibility_unscaled", r.feasibility_unscaled},
-            {"complementarity", r.complementarity},
-            {"complementarity_unscaled", r.complementarity_unscaled},
-            {"violations", violations}};
+  Json json{{"step", step.step}, {"claimed_status", to_string(step.claimed)}};
+  json.update(residuals_json(r));
+  json["violations"] = violations;
   if (step.negative_curvatures) json["negative_curvatures"] = *step.negative_curvatures;
   return json;
 }

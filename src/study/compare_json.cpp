@@ -1,8 +1,9 @@
 #include "study/compare_json.h"
 
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+
+#include "study/residuals_json.h"
 
 namespace taut {
 namespace {
@@ -10,37 +11,19 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr int format_version = 1;
 
-double number(const Json& json) {
-  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
-}
-
-Json residuals_json(const Residuals& r) {
-  Json violations = Json::object();
+/// The residuals with what the judge says of each constraint.
+Json judged_json(const Residuals& r) {
+  Json json = residuals_json(r), violations = Json::object();
   for (const Violation& violation : r.violations)
     violations[violation.constraint] = {
         {"max", violation.max}, {"where", violation.where}, {"element", violation.element}};
-  return {{"stationarity", r.stationarity},
-          {"stationarity_unscaled", r.stationarity_unscaled},
-          {"force_scale", r.force_scale},
-          {"worst_node", r.worst_node},
-          {"feasibility", r.feasibility},
-          {"feasibility_unscaled", r.feasibility_unscaled},
-          {"complementarity", r.complementarity},
-          {"complementarity_unscaled", r.complementarity_unscaled},
-          {"finite", r.finite},
-          {"violations", violations}};
+  json["finite"] = r.finite;
+  json["violations"] = violations;
+  return json;
 }
 
-Residuals read_residuals(const Json& json) {
-  Residuals r;
-  r.stationarity = number(json.at("stationarity"));
-  r.stationarity_unscaled = number(json.at("stationarity_unscaled"));
-  r.force_scale = number(json.at("force_scale"));
-  r.worst_node = json.at("worst_node");
-  r.feasibility = number(json.at("feasibility"));
-  r.feasibility_unscaled = number(json.at("feasibility_unscaled"));
-  r.complementarity = number(json.at("complementarity"));
-  r.complementarity_unscaled = number(json.at("complementarity_unscaled"));
+Residuals read_judged(const Json& json) {
+  Residuals r = read_residuals(json);
   r.finite = json.at("finite");
   for (const auto& [constraint, violation] : json.at("violations").items())
     r.violations.push_back(
@@ -55,15 +38,6 @@ Json counts_json(const Counts& counts) {
           {"symbolic_analyses", counts.symbolic_analyses},
           {"matrix_allocations", counts.matrix_allocations},
           {"function_evaluations", counts.function_evaluations}};
-}
-
-Counts read_counts(const Json& json) {
-  return {json.at("outer"),
-          json.at("linear_solves"),
-          json.at("factorizations"),
-          json.at("symbolic_analyses"),
-          json.at("matrix_allocations"),
-          json.at("function_evaluations")};
 }
 
 Json timings_json(const Timings& t) {
@@ -90,7 +64,7 @@ Json trial_json(const StepTrial& trial) {
           {"message", trial.result.message},
           {"objective", trial.objective},
           {"objective_at_start", trial.objective_at_start},
-          {"residuals", residuals_json(trial.residuals)},
+          {"residuals", judged_json(trial.residuals)},
           {"worst_elements", worst},
           {"warm_start", trial.warm_start},
           {"counts", counts_json(trial.result.counts)},
@@ -108,7 +82,7 @@ StepTrial read_trial(const Json& json) {
   trial.result.message = json.at("message");
   trial.objective = number(json.at("objective"));
   trial.objective_at_start = number(json.at("objective_at_start"));
-  trial.residuals = read_residuals(json.at("residuals"));
+  trial.residuals = read_judged(json.at("residuals"));
   for (const Json& worst : json.at("worst_elements"))
     trial.worst_elements.push_back({worst.at("constraint"), worst.at("element"), number(worst.at("violation"))});
   trial.warm_start = json.at("warm_start");

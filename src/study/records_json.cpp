@@ -1,18 +1,15 @@
 #include "study/records_json.h"
 
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+
+#include "study/residuals_json.h"
 
 namespace taut {
 namespace {
 
 using Json = nlohmann::ordered_json;
 constexpr int format_version = 1;
-
-double number(const Json& json) {
-  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
-}
 
 std::string text_of(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace); }
 
@@ -60,7 +57,7 @@ Json violations_json(const RunSummary& summary) {
   return json;
 }
 
-Json residuals_json(const RunSummary& s) {
+Json worst_residuals_json(const RunSummary& s) {
   return {{"stationarity", s.stationarity.scaled},
           {"stationarity_unscaled", s.stationarity.unscaled},
           {"force_scale", s.force_scale},
@@ -74,7 +71,7 @@ Json residuals_json(const RunSummary& s) {
           {"complementarity_step", s.complementarity.step}};
 }
 
-void read_residuals(const Json& json, RunSummary& s) {
+void read_worst_residuals(const Json& json, RunSummary& s) {
   const auto read = [&json](const std::string& name) {
     return Worst{number(json.at(name)), number(json.at(name + "_unscaled")), json.at(name + "_step").get<int>()};
   };
@@ -94,15 +91,6 @@ void read_violations(const Json& json, RunSummary& s) {
     }
     s.violations.push_back(worst);
   }
-}
-
-void read_counts(const Json& json, Counts& counts) {
-  counts = {json.at("outer"),
-            json.at("linear_solves"),
-            json.at("factorizations"),
-            json.at("symbolic_analyses"),
-            json.at("matrix_allocations"),
-            json.at("function_evaluations")};
 }
 
 Json seconds_json(const RunSeconds& seconds) {
@@ -182,24 +170,13 @@ NamedNumbers read_numbers(const Json& json) {
   return numbers;
 }
 
-void read_step_residuals(const Json& json, Residuals& r) {
-  r.stationarity = number(json.at("stationarity"));
-  r.stationarity_unscaled = number(json.at("stationarity_unscaled"));
-  r.force_scale = number(json.at("force_scale"));
-  r.worst_node = json.at("worst_node");
-  r.feasibility = number(json.at("feasibility"));
-  r.feasibility_unscaled = number(json.at("feasibility_unscaled"));
-  r.complementarity = number(json.at("complementarity"));
-  r.complementarity_unscaled = number(json.at("complementarity_unscaled"));
-}
-
 StepRecord step_of(const Json& json) {
   StepRecord record;
   record.step = json.at("step");
   record.time = number(json.at("time"));
   record.status = status_from_string(json.at("status").get<std::string>());
   record.message = json.at("message");
-  read_step_residuals(json.at("residuals"), record.residuals);
+  record.residuals = read_residuals(json.at("residuals"));
   for (const auto& [constraint, v] : json.at("violations").items()) {
     record.residuals.violations.push_back({constraint, number(v.at("max")), v.at("where"), -1});
     if (!v.contains("edge_penetration")) continue;
@@ -233,7 +210,7 @@ RunSummary summary_of(const Json& json) {
   s.steps_solved = json.at("steps").at("solved");
   s.steps_asked = json.at("steps").at("asked");
   s.objective = number(json.at("objective"));
-  read_residuals(json.at("residuals"), s);
+  read_worst_residuals(json.at("residuals"), s);
   read_violations(json.at("violations"), s);
   s.worst_elements_step = json.at("worst_elements_step");
   for (const Json& worst : json.at("worst_elements")) {
@@ -245,7 +222,7 @@ RunSummary summary_of(const Json& json) {
   }
   if (json.contains("probes")) s.probes = read_probes(json["probes"]);
   if (json.contains("modes")) s.modes = read_modes(json["modes"]);
-  read_counts(json.at("counts"), s.counts);
+  s.counts = read_counts(json.at("counts"));
   read_seconds(json.at("seconds"), s.seconds);
   s.peak_memory_bytes = json.at("peak_memory_bytes");
   s.version = json.at("version");
@@ -269,7 +246,7 @@ std::string summary_text(const RunSummary& s) {
   json["message"] = s.message;
   json["steps"] = {{"done", s.steps_done}, {"solved", s.steps_solved}, {"asked", s.steps_asked}};
   json["objective"] = s.objective;
-  json["residuals"] = residuals_json(s);
+  json["residuals"] = worst_residuals_json(s);
   json["violations"] = violations_json(s);
   json["worst_elements_step"] = s.worst_elements_step;
   json["worst_elements"] = worst_elements_json(s);
@@ -297,17 +274,12 @@ RunSummary parse_summary(std::string_view text) {
 }
 
 std::string step_line(const StepRecord& record) {
-  const Residuals& r = record.residuals;
   Json json;
   json["step"] = record.step;
   json["time"] = record.time;
   json["status"] = to_string(record.status);
   json["message"] = record.message;
-  json["residuals"] = {
-      {"stationarity", r.stationarity},       {"stationarity_unscaled", r.stationarity_unscaled},
-      {"force_scale", r.force_scale},         {"worst_node", r.worst_node},
-      {"feasibility", r.feasibility},         {"feasibility_unscaled", r.feasibility_unscaled},
-      {"complementarity", r.complementarity}, {"complementarity_unscaled", r.complementarity_unscaled}};
+  json["residuals"] = residuals_json(record.residuals);
   json["violations"] = violations_json(record);
   json["objective"] = record.objective;
   json["energies"] = numbers_json(record.energies);
