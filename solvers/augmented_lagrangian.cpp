@@ -175,7 +175,12 @@ void AugmentedLagrangian::Run::start(const WarmStart& warm) {
   const Vector equal = work.equalities.stacked(warm.multipliers, work.slacks.size());
   work.equalities.put(options.warm_multipliers ? equal : Vector(Vector::Zero(equal.size())), work.slacks.size(),
                       result.multipliers);
-  judged = residuals(problem, result);
+  // Of the start only the scale of its forces is wanted, and the last step's is as good.
+  if (warm.force_scale > 0 && !work.slacks.empty()) {
+    judged.force_scale = warm.force_scale;
+  } else {
+    judged = residuals(problem, result);
+  }
 }
 
 /// Minimises over x until its residual is small against the force that the multiplier update would change.
@@ -288,7 +293,7 @@ bool AugmentedLagrangian::Run::central_path() {
   Vector x = result.x, equal = work.equalities.stacked(result.multipliers, work.slacks.size());
   const bool solved = follow_central_path(
       work.assembly, *work.system, work.equalities, work.slacks, problem.node_size, judged.force_scale,
-      options.tolerances.stationarity * judged.force_scale, options.central_path, options.threads, x, equal,
+      options.tolerances, options.central_path, options.threads, x, equal,
       [&](const Vector& candidate) {
         result.x = candidate;
         const Judge judge(problem, result.x);
@@ -424,6 +429,7 @@ Result AugmentedLagrangian::solve(const Problem& problem, const WarmStart& warm,
     run.start(warm);
     run.loop();
     result = std::move(run.result);
+    result.force_scale = run.judged.force_scale;
   }
   result.timings.total = total;
   result.timings.analysis = analysis;

@@ -91,9 +91,10 @@ class CentralPath {
   }
 
   /// Halves the step until the merit does not rise much or the path is near, or takes the best fraction tried. The
-  /// first trial is usually taken, so the next matrix is made along with its forces; where the multipliers' mismatch
-  /// alone is too large, neither is.
-  void advance(Vector& x) {
+  /// first trial is usually taken, so the next matrix is made along with its forces, unless a width of at most
+  /// `last_width` makes it likely that there is no next step; where the multipliers' mismatch alone is too large,
+  /// neither is.
+  void advance(Vector& x, double last_width) {
     const double before = merit_;
     double fraction = std::min(1.0, 0.9 * assembly_.largest_step(x, step_));
     double best_fraction = fraction, best = std::numeric_limits<double>::infinity();
@@ -105,7 +106,7 @@ class CentralPath {
       // A shorter width raises the merit of a point that was on the path.
       const bool may_be_near = target_width_ < start_width_ && centred();
       if (merit_ <= tolerated || may_be_near) {
-        measure_forces(trial_, halving == 0);
+        measure_forces(trial_, halving == 0 && width_ > last_width);
         const bool near = may_be_near && force_ <= width_ * force_scale_;
         accepted = merit_ <= tolerated || (near && std::isfinite(merit_));
       }
@@ -204,15 +205,19 @@ void CentralPathOptions::validate() const {
 }
 
 bool follow_central_path(Assembly& assembly, NewtonSystem& system, const EqualityRows& equalities,
-                         std::deque<EliminatedSlack>& slacks, int node_size, double force_scale, double force_tolerance,
-                         const CentralPathOptions& options, int threads, Vector& x, Vector& equal,
-                         const std::function<double(const Vector&)>& judge, const Budget& budget, Counts& counts,
-                         Timings& timings) {
+                         std::deque<EliminatedSlack>& slacks, int node_size, double force_scale,
+                         const Tolerances& tolerances, const CentralPathOptions& options, int threads, Vector& x,
+                         Vector& equal, const std::function<double(const Vector&)>& judge, const Budget& budget,
+                         Counts& counts, Timings& timings) {
   CentralPath path(assembly, system, equalities, slacks, node_size, force_scale, options, threads, equal, counts,
                    timings);
   path.start(x);
   bool accepted = false;
-  double ask_below = 1e-5;  // residuals that are too large shrink about as the width does
+  const double force_tolerance = tolerances.stationarity * force_scale;
+  // The residuals are about as small as the width, and shrink as it does.
+  double ask_below =
+      std::max(4 * std::min({tolerances.stationarity, tolerances.feasibility, tolerances.complementarity}),
+               4 * options.smallest_width);
   for (int iteration = 0; iteration < options.max_iterations && std::isfinite(path.merit()); ++iteration) {
     if (path.width() <= ask_below && path.force() <= force_tolerance) {
       const double ratio = judge(x);
@@ -221,7 +226,7 @@ bool follow_central_path(Assembly& assembly, NewtonSystem& system, const Equalit
       ask_below = path.width() * std::clamp(2 / ratio, 0.1, 1.0);
     }
     if (path.lost() || budget.interrupted() || budget.out_of_time() || !path.step(x)) break;
-    path.advance(x);
+    path.advance(x, ask_below);
   }
   for (EliminatedSlack& slack : slacks) slack.set_linearisation(Linearisation::augmented_lagrangian);
   return accepted;

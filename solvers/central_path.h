@@ -33,9 +33,9 @@ struct CentralPathOptions {
 /// worst of the residuals over their tolerances; it is asked once smoothing and forces are small, and at most 1 ends
 /// the path with true.
 bool follow_central_path(Assembly& assembly, NewtonSystem& system, const EqualityRows& equalities,
-                         std::deque<EliminatedSlack>& slacks, int node_size, double force_scale, double force_tolerance,
-                         const CentralPathOptions& options, int threads, Vector& x, Vector& equal,
-                         const std::function<double(const Vector&)>& judge, const Budget& budget, Counts& counts,
-                         Timings& timings);
+                         std::deque<EliminatedSlack>& slacks, int node_size, double force_scale,
+                         const Tolerances& tolerances, const CentralPathOptions& options, int threads, Vector& x,
+                         Vector& equal, const std::function<double(const Vector&)>& judge, const Budget& budget,
+                         Counts& counts, Timings& timings);
 
 }  // namespace taut

@@ -49,6 +49,7 @@ struct Result {
   std::vector<Vector> multipliers;
   std::vector<double> penalties;  ///< at the start of the solve, one per constraint (a warm start for the next); empty
                                   ///< for solvers that have none
+  double force_scale = 0;  ///< N, Residuals::force_scale where the solver has judged itself (a warm start for the next)
   Counts counts;
   Timings timings;
   std::string message;  ///< one sentence on why it ended so

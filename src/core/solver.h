@@ -11,10 +11,11 @@
 
 namespace taut {
 
-/// What an earlier step knows. Empty vectors mean: nothing.
+/// What an earlier step knows. Empty vectors and a zero mean: nothing.
 struct WarmStart {
   std::vector<Vector> multipliers;
   std::vector<double> penalties;
+  double force_scale = 0;  ///< N, Residuals::force_scale at its end
 };
 
 /// When to give up early: a point in time, or a flag that a signal handler raises.

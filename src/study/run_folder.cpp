@@ -40,6 +40,7 @@ std::optional<State> before(const Checkpoint& checkpoint) {
   arrays["positions"] = checkpoint.arrays.at("previous_positions");
   arrays["velocities"] = checkpoint.arrays.at("previous_velocities");
   arrays["penalties"] = {};
+  arrays["force_scale"] = {0.0};
   return state_from(static_cast<int>(checkpoint.step) - 1, arrays);
 }
 

@@ -23,7 +23,8 @@ NamedArrays state_arrays(const State& state) {
                      {"previous_positions", array(previous_positions)},
                      {"previous_velocities", array(previous_velocities)},
                      {"auxiliary_accelerations", array(auxiliary_accelerations)},
-                     {"penalties", warm.penalties}};
+                     {"penalties", warm.penalties},
+                     {"force_scale", {warm.force_scale}}};
   put_multipliers(warm.multipliers, arrays);
   return arrays;
 }
@@ -36,7 +37,7 @@ State state_from(int step, const NamedArrays& arrays) {
               vector_of(arrays, "previous_positions"),
               vector_of(arrays, "previous_velocities"),
               vector_of(arrays, "auxiliary_accelerations"),
-              {{}, arrays.at("penalties")}};
+              {{}, arrays.at("penalties"), arrays.at("force_scale").at(0)}};
   for (std::size_t k = 0;; ++k) {
     const std::string name = "multipliers " + std::to_string(k);
     if (!arrays.contains(name)) return state;
