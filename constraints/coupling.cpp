@@ -1,6 +1,7 @@
 #include "constraints/coupling.h"
 
 #include <Eigen/SparseCholesky>
+#include <numeric>
 #include <stdexcept>
 
 namespace taut {
@@ -77,6 +78,8 @@ LinearEqualities couple(const CoupledMeshes& meshes) {
   append_for_axes(SparseMatrix(means * p * surface) * -1.0, same, same, entries);
   equal.rows = from_triplets(3 * p.cols(), 3 * meshes.nodes, entries);
   equal.values = Vector::Zero(equal.rows.rows());
+  equal.following.resize(static_cast<std::size_t>(3 * p.rows()));
+  std::iota(equal.following.begin(), equal.following.end(), 3 * meshes.first_fine_node);
   equal.row_name = [name = meshes.coarse_name](Index row) {
     return "vertex " + std::to_string(row / 3) + " of " + name + ", " + "xyz"[row % 3];
   };

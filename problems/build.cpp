@@ -6,6 +6,7 @@
 #include "energies/membrane.h"
 #include "problems/body_shape.h"
 #include "problems/build_parts.h"
+#include "solvers/alternating.h"
 #include "solvers/augmented_lagrangian.h"
 #include "solvers/ipopt.h"
 #include "solvers/nlopt.h"
@@ -63,7 +64,7 @@ void add_material(const Scene& scene, const scene::Body& body, const BodyShape& 
   }
 }
 
-std::unique_ptr<Solver> build_augmented_lagrangian(const Scene& scene, int threads) {
+AugmentedLagrangianOptions augmented_lagrangian_options(const Scene& scene, int threads) {
   AugmentedLagrangianOptions options;
   options.tolerances = scene.solver.tolerance;
   // Measured: with obstacles the path takes 2 to 7 times the linear solves of the loop of multiplier updates; with
@@ -87,9 +88,24 @@ std::unique_ptr<Solver> build_augmented_lagrangian(const Scene& scene, int threa
   options.max_outer = scene.solver.max_outer;
   options.max_newton = scene.solver.max_newton;
   options.threads = threads;
+  return options;
+}
+
+std::unique_ptr<Solver> build_augmented_lagrangian(const Scene& scene, int threads) {
+  const AugmentedLagrangianOptions options = augmented_lagrangian_options(scene, threads);
   auto solver = std::make_unique<AugmentedLagrangian>(options);
   if (!scene.solver.penalised_pins) return solver;
   return std::make_unique<PenalisedPins>(std::move(solver), options.tolerances);
+}
+
+std::unique_ptr<Solver> build_alternating(const Scene& scene, int threads) {
+  const bool covers = std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                  [](const scene::Body& body) { return body.cover.has_value(); });
+  if (!covers) {
+    throw InputError(scene.source, "/solver/method",
+                     "found \"alternating\", allowed: another one (no body has a cover to take its turn with)");
+  }
+  return std::make_unique<Alternating>(augmented_lagrangian_options(scene, threads));
 }
 
 std::unique_ptr<Solver> build_ipopt(const Scene& scene) {
@@ -206,6 +222,8 @@ std::unique_ptr<Solver> build_solver(const Scene& scene, int threads) {
     case scene::SolverMethod::augmented_lagrangian:
     case scene::SolverMethod::null_space:
       return build_augmented_lagrangian(scene, threads);
+    case scene::SolverMethod::alternating:
+      return build_alternating(scene, threads);
     case scene::SolverMethod::ipopt:
       return build_ipopt(scene);
     case scene::SolverMethod::nlopt:

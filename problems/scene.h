@@ -230,7 +230,7 @@ struct Load {
 };
 
 enum class OnFailure { stop, proceed };
-enum class SolverMethod { augmented_lagrangian, null_space, ipopt, nlopt };
+enum class SolverMethod { augmented_lagrangian, null_space, alternating, ipopt, nlopt };
 struct IpoptSettings {
   int max_iterations = 500;
   bool warm_start = false;

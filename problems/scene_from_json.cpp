@@ -281,6 +281,7 @@ class SceneReader : public ProbeReader {
     scene::Solver result;
     result.method = choose<SolverMethod>(json["method"], {{"augmented_lagrangian", SolverMethod::augmented_lagrangian},
                                                           {"null_space", SolverMethod::null_space},
+                                                          {"alternating", SolverMethod::alternating},
                                                           {"ipopt", SolverMethod::ipopt},
                                                           {"nlopt", SolverMethod::nlopt}});
     const Json& tolerance = json["tolerance"];

@@ -114,37 +114,45 @@ QuasiDefiniteSystem::QuasiDefiniteSystem(const Assembly& assembly, const Equalit
     : EqualitySystem(assembly, equalities, fixed) {
   const SparseMatrix& matrix = assembly.matrix();
   const Index n = matrix.rows(), m = rows().rows();
-  std::vector<int> row_of, column_of;
   for (Index column = 0; column < n; ++column) {
     for (Index slot = matrix.outerIndexPtr()[column]; slot < matrix.outerIndexPtr()[column + 1]; ++slot) {
       if (matrix.innerIndexPtr()[slot] < column) continue;
       if (matrix.innerIndexPtr()[slot] == column) diagonal_.push_back(static_cast<Index>(slots_.size()));
       slots_.push_back(slot);
-      row_of.push_back(matrix.innerIndexPtr()[slot]);
-      column_of.push_back(static_cast<int>(column));
+      row_of_.push_back(matrix.innerIndexPtr()[slot]);
+      column_of_.push_back(static_cast<int>(column));
     }
   }
   values_.resize(static_cast<Index>(slots_.size()) + rows().nonZeros() + m);
   for (Index column = 0; column < n; ++column) {
     for (SparseMatrix::InnerIterator entry(rows(), column); entry; ++entry) {
-      row_of.push_back(static_cast<int>(n + entry.row()));
-      column_of.push_back(static_cast<int>(column));
+      row_of_.push_back(static_cast<int>(n + entry.row()));
+      column_of_.push_back(static_cast<int>(column));
     }
   }
   for (Index i = 0; i < m; ++i) {
-    row_of.push_back(static_cast<int>(n + i));
-    column_of.push_back(static_cast<int>(n + i));
+    row_of_.push_back(static_cast<int>(n + i));
+    column_of_.push_back(static_cast<int>(n + i));
   }
   // Three rows of a coupled vertex have the same nodes.
   const int node_size = node_size_of(assembly), group = m % node_size == 0 ? node_size : 1;
   const std::vector<int> nodes = fill_reducing_order(with_rows(assembly.graph(), rows(), node_size, group));
-  std::vector<int> order;
   for (const int node : nodes) {
     const bool variable = node < assembly.graph().count();
     const int first = variable ? node * node_size : static_cast<int>(n) + (node - assembly.graph().count()) * group;
-    for (int i = 0; i < (variable ? node_size : group); ++i) order.push_back(first + i);
+    for (int i = 0; i < (variable ? node_size : group); ++i) order_.push_back(first + i);
   }
-  factor_ = std::make_unique<SymmetricIndefinite>(n + m, row_of, column_of, order);
+  if (SupernodalLdlt::available()) factor_ = std::make_unique<SupernodalLdlt>(n + m, row_of_, column_of_, order_);
+}
+
+bool QuasiDefiniteSystem::factorize_values() {
+  use_pivots_ = !factor_ || !factor_->factorize(values_);
+  if (!use_pivots_) return true;
+  ++pivoted_;
+  if (!with_pivots_)
+    with_pivots_ =
+        std::make_unique<SymmetricIndefinite>(static_cast<Index>(order_.size()), row_of_, column_of_, order_);
+  return with_pivots_->factorize(values_);
 }
 
 bool QuasiDefiniteSystem::factorize_penalised(double shift) {
@@ -162,17 +170,24 @@ bool QuasiDefiniteSystem::factorize_penalised(double shift) {
   }
   values_.tail(mu.size()) = -scales_.cwiseAbs2().cwiseQuotient(mu);
   negative_curvatures_.reset();
-  if (!factor_->factorize(values_)) return false;
-  negative_curvatures_ = factor_->negative_pivots() - rows().rows();
+  if (!factorize_values()) return false;
+  const Index negative = use_pivots_ ? with_pivots_->negative_pivots() : factor_->negative_pivots();
+  negative_curvatures_ = negative - rows().rows();
   return negative_curvatures_ == 0;
 }
 
 void QuasiDefiniteSystem::solve_penalised(Vector& step, Vector& multipliers) {
   right_hand_side_.resize(step.size() + multipliers.size());
   right_hand_side_ << step, scales_.cwiseProduct(multipliers);
-  factor_->solve(right_hand_side_);
+  use_pivots_ ? with_pivots_->solve(right_hand_side_) : factor_->solve(right_hand_side_);
   step = right_hand_side_.head(step.size());
   multipliers = scales_.cwiseProduct(right_hand_side_.tail(multipliers.size()));
+}
+
+NewtonSystem::Size QuasiDefiniteSystem::size() const {
+  if (use_pivots_) return {with_pivots_->factor_flops(), with_pivots_->factor_nonzeros(), with_pivots_->memory_bytes()};
+  if (!factor_) return {};
+  return {factor_->factor_flops(), factor_->factor_nonzeros(), factor_->memory_bytes()};
 }
 
 namespace {

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "linalg/supernodal_ldlt.h"
 #include "linalg/symmetric_indefinite.h"
 #include "solvers/equality_rows.h"
 #include "solvers/newton.h"
@@ -41,24 +42,32 @@ class EqualitySystem : public NewtonSystem {
   Vector penalties_, top_, bottom_, dx_, dnu_, part_, part_nu_, ordered_;
 };
 
-/// The system as it stands, factorised by MUMPS. Its negative pivots are counted: as many as rows, or H is not positive
-/// definite where A dx = 0.
+/// The system as it stands, factorised without pivoting, by MUMPS where that meets a small pivot. Negative pivots are
+/// counted: as many as rows, or H is not positive definite where A dx = 0.
 class QuasiDefiniteSystem final : public EqualitySystem {
  public:
   QuasiDefiniteSystem(const Assembly& assembly, const EqualityRows& equalities, const std::vector<int>& fixed);
   /// Of the last matrix on A dx = 0; nothing where it was singular.
   std::optional<Index> negative_curvatures() const { return negative_curvatures_; }
-  Size size() const override { return {factor_->factor_flops(), factor_->factor_nonzeros(), factor_->memory_bytes()}; }
+  /// How many factorisations needed pivoting.
+  Index pivoted() const { return pivoted_; }
+  Size size() const override;
 
  private:
   bool factorize_penalised(double shift) override;
   void solve_penalised(Vector& step, Vector& multipliers) override;
+  bool factorize_values();
 
   std::vector<Index> slots_;  // entries of the assembled matrix in the lower triangle
   std::vector<Index> diagonal_;
   Vector scales_, values_, right_hand_side_;
   std::optional<Index> negative_curvatures_;
-  std::unique_ptr<SymmetricIndefinite> factor_;
+  // Of the whole system: entries of the lower triangle and order.
+  std::vector<int> row_of_, column_of_, order_;
+  std::unique_ptr<SupernodalLdlt> factor_;            // null where it is not available
+  std::unique_ptr<SymmetricIndefinite> with_pivots_;  // made when first needed
+  bool use_pivots_ = false;                           // in solves with the last matrix
+  Index pivoted_ = 0;
 };
 
 /// The multipliers eliminated, H + sum mu a a^T, factorised by CHOLMOD: every row couples all of its variables with

@@ -43,6 +43,9 @@ Lines solvers() {
       {"null_space",
        "the same multiplier loop with pins kept in the null space of their equations and another factorisation: a "
        "check"},
+      {"alternating",
+       "a cover and its shell in turn, with a penalty and multipliers between them: a comparison, for scenes with "
+       "covers"},
       {"ipopt",
        "Ipopt's interior-point method on a smooth scalar form of the constraints, with exact second derivatives"},
       {"nlopt", "algorithms of NLopt (key: solver.nlopt.algorithm) on the same form; small problems only"}};

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "core/types.h"
 
@@ -19,6 +20,9 @@ struct LinearEqualities {
   /// A basis Z of the null space of A, variables x (variables - rank), where whoever made the equations has one: A Z =
   /// 0 to round-off and full rank. Empty: a solver that needs one finds it.
   SparseMatrix null_space{};
+  /// Variables of the side that follows the other, a cover's, ascending: for solvers that take the sides in turn. Empty
+  /// where that is not known.
+  std::vector<int> following{};
 };
 
 }  // namespace taut

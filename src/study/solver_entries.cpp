@@ -28,6 +28,9 @@ const std::vector<SolverEntry>& solver_entries() {
       {"null_space_cg",
        "the same by conjugate gradients, without a factor",
        {{"solver.method", "null_space"}, {"solver.null_space", "conjugate_gradients"}}},
+      {"alternating",
+       "a cover and its shell in turn, with a penalty and multipliers; up to 10000 rounds of both",
+       {{"solver.method", "alternating"}, {"solver.max_outer", "10000"}}},
       {"ipopt", "interior point, by Ipopt", {{"solver.method", "ipopt"}}},
       {"nlopt", "sequential quadratic programming, by NLopt; small problems only", {{"solver.method", "nlopt"}}},
   };

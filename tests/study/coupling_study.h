@@ -6,22 +6,25 @@
 
 #include "problems/build.h"
 #include "problems/read_scene.h"
+#include "study/solver_entries.h"
 
 namespace taut {
 
-/// How far four ways to solve the same coupled steps are apart: the quasi-definite system, penalised rows, the null
-/// space, and where it is asked for Ipopt. Each step starts at the state that the first has reached, the others without
-/// multipliers.
+/// How far several ways to solve the same coupled steps are apart: the default, and entries of `taut compare`. Each
+/// step starts at the state that the default has reached, the others without its multipliers.
 struct CouplingStudy {
   int steps = 0, unsolved = 0;
-  double distance = 0;  ///< largest of any position, over the scene's size
-  double coupling = 0;  ///< largest violation of the coupling, over the scene's size
+  double distance = 0;    ///< largest of any position, over the scene's size
+  double coupling = 0;    ///< largest violation of the coupling, over the scene's size
+  double worst = 0;       ///< largest residual of any kind
+  long active_steps = 0;  ///< in which some constraint has a multiplier
 
-  CouplingStudy(const std::string& problem, Overrides overrides, int step_count, bool with_ipopt) {
+  CouplingStudy(const std::string& problem, Overrides overrides, int step_count, const std::vector<std::string>& others,
+                const std::string& tolerance = "1e-9") {
     for (const char* residual : {"stationarity", "feasibility", "complementarity"})
-      overrides.emplace_back(std::string("solver.tolerance.") + residual, "1e-9");
-    std::vector<Overrides> kinds{{}, {{"solver.equalities", "penalised"}}, {{"solver.method", "null_space"}}};
-    if (with_ipopt) kinds.push_back({{"solver.method", "ipopt"}});
+      overrides.emplace_back(std::string("solver.tolerance.") + residual, tolerance);
+    std::vector<Overrides> kinds{{}};
+    for (const std::string& other : others) kinds.push_back(solver_entry(other).overrides);
     for (const Overrides& kind : kinds) {
       Overrides own = overrides;
       own.insert(own.end(), kind.begin(), kind.end());
@@ -54,12 +57,17 @@ struct CouplingStudy {
       Result result = way.solver->solve(problem, start.warm, {});
       const Residuals judged = residuals(problem, result);
       unsolved += judged.within(way.scene.solver.tolerance) ? 0 : 1;
+      worst = std::max({worst, judged.stationarity, judged.feasibility, judged.complementarity});
       const double size = way.model->equalities.front()->violation_scale;
       coupling = std::max(coupling, judged.violations[problem.constraints.size()].max / size);
-      if (&way == &ways_.front())
-        first = std::move(result);
-      else
+      if (&way != &ways_.front()) {
         distance = std::max(distance, (result.x - first.x).lpNorm<Eigen::Infinity>() / size);
+        continue;
+      }
+      first = std::move(result);
+      bool active = false;
+      for (std::size_t k = 0; k < problem.constraints.size(); ++k) active = active || !first.multipliers[k].isZero(0);
+      active_steps += active ? 1 : 0;
     }
     ways_.front().stepper.restore(state);
     ways_.front().stepper.prepare();
