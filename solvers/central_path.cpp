@@ -216,8 +216,8 @@ bool follow_central_path(Assembly& assembly, NewtonSystem& system, const Equalit
   const double force_tolerance = tolerances.stationarity * force_scale;
   // The residuals are about as small as the width, and shrink as it does.
   double ask_below =
-      std::max(4 * std::min({tolerances.stationarity, tolerances.feasibility, tolerances.complementarity}),
-               4 * options.smallest_width);
+      std::max(10 * std::min({tolerances.stationarity, tolerances.feasibility, tolerances.complementarity}),
+               10 * options.smallest_width);
   for (int iteration = 0; iteration < options.max_iterations && std::isfinite(path.merit()); ++iteration) {
     if (path.width() <= ask_below && path.force() <= force_tolerance) {
       const double ratio = judge(x);
