@@ -33,6 +33,8 @@ void add_elastic(std::unique_ptr<Energy> energy, double beta, Model& model) {
   model.elastic.push_back(std::move(energy));
 }
 
+}  // namespace
+
 void add_material(const Scene& scene, const scene::Body& body, const BodyShape& shape, Model& model) {
   if (body.shell) {
     for (auto& energy : add_shell(scene, body, shape, model))
@@ -63,6 +65,8 @@ void add_material(const Scene& scene, const scene::Body& body, const BodyShape& 
   }
 }
 
+namespace {
+
 std::unique_ptr<Solver> build_augmented_lagrangian(const Scene& scene, int threads) {
   AugmentedLagrangianOptions options;
   options.tolerances = scene.solver.tolerance;
@@ -75,7 +79,9 @@ std::unique_ptr<Solver> build_augmented_lagrangian(const Scene& scene, int threa
       });
   const bool covers = std::any_of(scene.bodies.begin(), scene.bodies.end(),
                                   [](const scene::Body& body) { return body.cover.has_value(); });
-  options.central_path.enabled = scene.solver.central_path && !obstacles && !covers;
+  // Equalities have no interior.
+  const bool modal = is_modal(scene);
+  options.central_path.enabled = scene.solver.central_path && !obstacles && !covers && !modal;
   options.penalty = scene.solver.penalty;
   options.penalty_growth = scene.solver.penalty_growth;
   options.fixed_penalty = scene.solver.fixed_penalty;
@@ -166,6 +172,13 @@ std::unique_ptr<Model> build_model(const Scene& scene) {
 
   auto model = std::make_unique<Model>();
   model->name = scene.name;
+  if (is_modal(scene)) {
+    add_mesh(scene.bodies[0], shapes[0], *model);
+    reduce_to_modes(scene, shapes[0], *model);
+    refuse_more_than_nlopt_takes(scene, *model);
+    for (const scene::Probe& probe : scene.output.probes) model->probed.push_back(probed_nodes(scene, shapes, probe));
+    return model;
+  }
   const Index vertices = shapes.empty() ? 0 : shapes.back().first_node + shapes.back().nodes();
   model->positions.resize(3 * vertices);
   model->velocities.resize(3 * vertices);
@@ -191,6 +204,9 @@ TimeOptions time_options(const Scene& scene) {
     case scene::Integrator::generalised_alpha:
       options.integrator = Integrator::generalised_alpha;
       break;
+    case scene::Integrator::newmark:
+      options.integrator = Integrator::newmark;
+      break;
     case scene::Integrator::quasi_static:
       options.integrator = Integrator::quasi_static;
       break;
@@ -198,6 +214,8 @@ TimeOptions time_options(const Scene& scene) {
   options.step = scene.time.step;
   options.steps = scene.time.steps;
   options.spectral_radius = scene.time.spectral_radius;
+  options.beta = scene.time.beta;
+  options.gamma = scene.time.gamma;
   return options;
 }
 
