@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "energies/hinge_bending.h"
+#include "energies/linear_tetrahedra.h"
 #include "energies/membrane.h"
 #include "problems/body_shape.h"
 #include "problems/build_parts.h"
@@ -39,6 +40,15 @@ void add_material(const Scene& scene, const scene::Body& body, const BodyShape& 
   if (body.shell) {
     for (auto& energy : add_shell(scene, body, shape, model))
       add_elastic(std::move(energy), body.damping.stiffness, model);
+    return;
+  }
+  if (body.solid) {
+    const TetrahedronMesh mesh{shape.mesh.vertices, shape.tetrahedra};
+    model.inertia.push_back(std::make_unique<Inertia>(
+        tetrahedron_inertia("inertia of " + body.name, mesh, body.density, body.mass == scene::Mass::lumped)));
+    model.mass_damping.push_back(body.damping.mass);
+    model.elastic.push_back(std::make_unique<LinearTetrahedra>("solid of " + body.name, mesh, body.solid->young_modulus,
+                                                               body.solid->poisson_ratio));
     return;
   }
   const double surface_density = body.density * body.thickness;

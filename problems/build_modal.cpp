@@ -40,12 +40,14 @@ Model full_model(const Scene& scene, const BodyShape& shape, const Model& reduce
 
 SparseMatrix curl_of(const BodyShape& shape) {
   if (shape.layered) return prism_curl(shape.layered->nodes, shape.layered->prisms);
+  if (!shape.tetrahedra.empty()) return tetrahedron_curl(shape.mesh.vertices, shape.tetrahedra);
   return surface_curl(shape.mesh.vertices, shape.mesh.triangles);
 }
 
 ModalBasis basis_of(const Scene& scene, const BodyShape& shape, const Model& full) {
   const scene::Modal& modal = *only_body(scene).modal;
-  const std::string mesh_hash = hash_of_mesh(full.positions, full.triangles), body_hash = hash_of_body(scene);
+  const std::string mesh_hash = hash_of_mesh(full.positions, full.triangles, shape.tetrahedra),
+                    body_hash = hash_of_body(scene);
   if (!modal.basis.empty()) {
     try {
       ModalBasis basis = read_basis(modal.basis, mesh_hash, body_hash);

@@ -38,10 +38,12 @@ ModalBasis basis_from(const Checkpoint& file) {
 
 }  // namespace
 
-std::string hash_of_mesh(const Vector& positions, const std::vector<Triangle>& triangles) {
+std::string hash_of_mesh(const Vector& positions, const std::vector<Triangle>& triangles,
+                         const std::vector<Tetrahedron>& tetrahedra) {
   std::string bytes(reinterpret_cast<const char*>(positions.data()),
                     static_cast<std::size_t>(positions.size()) * sizeof(double));
   bytes.append(reinterpret_cast<const char*>(triangles.data()), triangles.size() * sizeof(Triangle));
+  bytes.append(reinterpret_cast<const char*>(tetrahedra.data()), tetrahedra.size() * sizeof(Tetrahedron));
   return fnv1a(bytes);
 }
 

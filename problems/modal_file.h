@@ -6,12 +6,14 @@
 
 #include "dynamics/modal/modal_basis.h"
 #include "files/file_error.h"
+#include "geometry/tetrahedra.h"
 #include "problems/scene.h"
 
 namespace taut {
 
-/// Names a mesh: a hash of the positions of its nodes and of its triangles.
-std::string hash_of_mesh(const Vector& positions, const std::vector<Triangle>& triangles);
+/// Names a mesh: a hash of the positions of its nodes, its triangles and its tetrahedra.
+std::string hash_of_mesh(const Vector& positions, const std::vector<Triangle>& triangles,
+                         const std::vector<Tetrahedron>& tetrahedra);
 
 /// Names what the modes of the scene's only body depend on besides the mesh: its material, mass matrix and clamp.
 std::string hash_of_body(const Scene& scene);

@@ -93,6 +93,11 @@ struct ThickShell {
   PrismShellOptions options;
   Vector3 direction = Vector3::UnitX();  ///< where fibre angles count from
 };
+/// Tetrahedra of a Gmsh file, linearly elastic about rest: for the modes of a modal body.
+struct Solid {
+  double young_modulus = 0;  ///< Pa
+  double poisson_ratio = 0;
+};
 /// Nodes of a thick shell at a mesh vertex; of cloth the only one, whatever is asked for.
 enum class Surface { both, bottom, top, mid };
 /// What makes a body the fine membrane of the shell before it in the list.
@@ -155,6 +160,7 @@ struct Body {
   std::optional<Bending> bending;
   std::optional<ThickShell> shell;  ///< without it the body is cloth
   std::optional<Cover> cover;
+  std::optional<Solid> solid;
   std::optional<Modal> modal;                  ///< the body moves in modes of what the other members say
   Damping damping;                             ///< zero: none
   Vector3 initial_velocity = Vector3::Zero();  ///< m/s

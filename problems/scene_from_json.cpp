@@ -89,7 +89,10 @@ class SceneReader : public ProbeReader {
       wrinkled ? missing(pointer + "/cover", "an object (\"model\" is \"wrinkled_shell\")")
                : refuse(pointer + "/cover", "\"cover\"", "none of it unless \"model\" is \"wrinkled_shell\"");
     const bool either = wrinkled || json["model"] == "modal";
-    if (json["model"] == "thick_shell" || (either && !json.contains("membrane") && !json.contains("bending"))) {
+    if (const auto* file = std::get_if<MeshFile>(&result.mesh); file && file->path.extension() == ".msh") {
+      result.solid = solid(json, pointer);
+      result.density = json["density"];
+    } else if (json["model"] == "thick_shell" || (either && !json.contains("membrane") && !json.contains("bending"))) {
       result.shell = shell(json, pointer);
     } else {
       check_cloth(json, pointer);
@@ -99,6 +102,13 @@ class SceneReader : public ProbeReader {
     cloth(json, result);
     result.initial_velocity = vector(json["initial_velocity"]);
     return result;
+  }
+
+  Solid solid(const Json& json, const std::string& pointer) const {
+    if (json["model"] != "modal")
+      refuse(pointer + "/model", json["model"].dump() + " with a mesh of tetrahedra", "\"modal\"");
+    check_solid(json, pointer);
+    return {json["material"]["young_modulus"], json["material"]["poisson_ratio"]};
   }
 
   /// Fills in Body::modal where the model says so, once bodies can be selected from.
