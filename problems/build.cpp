@@ -182,6 +182,9 @@ std::unique_ptr<Model> build_model(const Scene& scene) {
 
   auto model = std::make_unique<Model>();
   model->name = scene.name;
+  const Index vertices = shapes.empty() ? 0 : shapes.back().first_node + shapes.back().nodes();
+  model->positions.resize(3 * vertices);
+  model->velocities.resize(3 * vertices);
   if (is_modal(scene)) {
     add_mesh(scene.bodies[0], shapes[0], *model);
     reduce_to_modes(scene, shapes[0], *model);
@@ -189,9 +192,6 @@ std::unique_ptr<Model> build_model(const Scene& scene) {
     for (const scene::Probe& probe : scene.output.probes) model->probed.push_back(probed_nodes(scene, shapes, probe));
     return model;
   }
-  const Index vertices = shapes.empty() ? 0 : shapes.back().first_node + shapes.back().nodes();
-  model->positions.resize(3 * vertices);
-  model->velocities.resize(3 * vertices);
   for (std::size_t k = 0; k < shapes.size(); ++k) add_mesh(scene.bodies[k], shapes[k], *model);
   for (std::size_t k = 0; k < shapes.size(); ++k) add_material(scene, scene.bodies[k], shapes[k], *model);
   add_constraints(scene, shapes, *model);

@@ -1,5 +1,6 @@
 #include "energies/linear_tetrahedra.h"
 
+#include <algorithm>
 #include <array>
 
 namespace taut {
@@ -43,8 +44,8 @@ double LinearTetrahedra::evaluate(Index element, const double* x, double* gradie
                                   Curvature /*curvature*/) const {
   const auto k = static_cast<std::size_t>(element);
   const Local moved = Eigen::Map<const Local>(x) - rest_[k], force = stiffness_[k] * moved;
-  if (gradient) Eigen::Map<Local>(gradient) = force;
-  if (hessian) Eigen::Map<Stiffness>(hessian) = stiffness_[k];
+  if (gradient) std::copy_n(force.data(), 12, gradient);
+  if (hessian) std::copy_n(stiffness_[k].data(), 144, hessian);
   return 0.5 * moved.dot(force);
 }
 
