@@ -45,6 +45,14 @@ TriangleMesh placed_mesh(const Body& body) {
   return std::move(mesh);
 }
 
+void place_solid(const Body& body, BodyShape& shape) {
+  TetrahedronMesh solid = read_tetrahedra(std::get<MeshFile>(body.mesh).path);
+  for (Vector3& vertex : solid.vertices) vertex = body.transform(vertex);
+  shape.mesh.vertices = std::move(solid.vertices);
+  shape.mesh.triangles = boundary_triangles(solid.cells);
+  shape.tetrahedra = std::move(solid.cells);
+}
+
 /// Positions of a second mesh, which has the triangles of the first.
 std::vector<Vector3> positions_of_rest_mesh(const Body& body, const TriangleMesh& mesh) {
   const TriangleMesh second = read_mesh(body.rest.file);
@@ -266,6 +274,8 @@ BodyShape make_body_shape(const Scene& scene, std::size_t index, const BodyShape
   try {
     if (body.cover)
       find_cover(body, *before, shape);
+    else if (body.solid)
+      place_solid(body, shape);
     else
       shape.mesh = placed_mesh(body);
     if (body.shell) add_layers(body, shape);

@@ -8,6 +8,7 @@
 #include "geometry/layered_mesh.h"
 #include "geometry/prolongation.h"
 #include "geometry/rest_shape.h"
+#include "geometry/tetrahedra.h"
 #include "geometry/triangle_mesh.h"
 #include "problems/scene.h"
 
@@ -23,6 +24,8 @@ struct BodyShape {
   std::vector<Vector3> rest_positions;          ///< m, one per vertex; empty for a rest shape from uv
   std::vector<std::array<Vector2, 3>> rest_uv;  ///< m, one triple per triangle; empty otherwise
   std::vector<RestTriangle> rest;  ///< on scene nodes: the mesh; of thick shells bottom (inside out), then top
+
+  std::vector<Tetrahedron> tetrahedra;  ///< of solids, whose mesh has all their vertices and the boundary's triangles
 
   std::optional<Prolongation> prolongation;  ///< of covers, from the surface of their shell
   std::vector<std::vector<int>> carriers;    ///< of covers: scene nodes whose mean is each vertex of that surface

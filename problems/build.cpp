@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "energies/hinge_bending.h"
+#include "energies/linear_tetrahedra.h"
 #include "energies/membrane.h"
 #include "problems/body_shape.h"
 #include "problems/build_parts.h"
@@ -34,10 +35,21 @@ void add_elastic(std::unique_ptr<Energy> energy, double beta, Model& model) {
   model.elastic.push_back(std::move(energy));
 }
 
+}  // namespace
+
 void add_material(const Scene& scene, const scene::Body& body, const BodyShape& shape, Model& model) {
   if (body.shell) {
     for (auto& energy : add_shell(scene, body, shape, model))
       add_elastic(std::move(energy), body.damping.stiffness, model);
+    return;
+  }
+  if (body.solid) {
+    const TetrahedronMesh mesh{shape.mesh.vertices, shape.tetrahedra};
+    model.inertia.push_back(std::make_unique<Inertia>(
+        tetrahedron_inertia("inertia of " + body.name, mesh, body.density, body.mass == scene::Mass::lumped)));
+    model.mass_damping.push_back(body.damping.mass);
+    model.elastic.push_back(std::make_unique<LinearTetrahedra>("solid of " + body.name, mesh, body.solid->young_modulus,
+                                                               body.solid->poisson_ratio));
     return;
   }
   const double surface_density = body.density * body.thickness;
@@ -64,6 +76,8 @@ void add_material(const Scene& scene, const scene::Body& body, const BodyShape& 
   }
 }
 
+namespace {
+
 AugmentedLagrangianOptions augmented_lagrangian_options(const Scene& scene, int threads) {
   AugmentedLagrangianOptions options;
   options.tolerances = scene.solver.tolerance;
@@ -76,7 +90,9 @@ AugmentedLagrangianOptions augmented_lagrangian_options(const Scene& scene, int 
       });
   const bool covers = std::any_of(scene.bodies.begin(), scene.bodies.end(),
                                   [](const scene::Body& body) { return body.cover.has_value(); });
-  options.central_path.enabled = scene.solver.central_path && !obstacles && !covers;
+  // Equalities have no interior.
+  const bool modal = is_modal(scene);
+  options.central_path.enabled = scene.solver.central_path && !obstacles && !covers && !modal;
   options.penalty = scene.solver.penalty;
   options.penalty_growth = scene.solver.penalty_growth;
   options.fixed_penalty = scene.solver.fixed_penalty;
@@ -185,6 +201,13 @@ std::unique_ptr<Model> build_model(const Scene& scene) {
   const Index vertices = shapes.empty() ? 0 : shapes.back().first_node + shapes.back().nodes();
   model->positions.resize(3 * vertices);
   model->velocities.resize(3 * vertices);
+  if (is_modal(scene)) {
+    add_mesh(scene.bodies[0], shapes[0], *model);
+    reduce_to_modes(scene, shapes[0], *model);
+    refuse_more_than_nlopt_takes(scene, *model);
+    for (const scene::Probe& probe : scene.output.probes) model->probed.push_back(probed_nodes(scene, shapes, probe));
+    return model;
+  }
   for (std::size_t k = 0; k < shapes.size(); ++k) add_mesh(scene.bodies[k], shapes[k], *model);
   for (std::size_t k = 0; k < shapes.size(); ++k) add_material(scene, scene.bodies[k], shapes[k], *model);
   add_constraints(scene, shapes, *model);
@@ -207,6 +230,9 @@ TimeOptions time_options(const Scene& scene) {
     case scene::Integrator::generalised_alpha:
       options.integrator = Integrator::generalised_alpha;
       break;
+    case scene::Integrator::newmark:
+      options.integrator = Integrator::newmark;
+      break;
     case scene::Integrator::quasi_static:
       options.integrator = Integrator::quasi_static;
       break;
@@ -214,6 +240,8 @@ TimeOptions time_options(const Scene& scene) {
   options.step = scene.time.step;
   options.steps = scene.time.steps;
   options.spectral_radius = scene.time.spectral_radius;
+  options.beta = scene.time.beta;
+  options.gamma = scene.time.gamma;
   return options;
 }
 

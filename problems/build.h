@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "core/solver.h"
+#include "dynamics/modal/modal_basis.h"
 #include "dynamics/model.h"
 #include "dynamics/stepper.h"
 #include "problems/scene.h"
@@ -13,6 +14,9 @@ namespace taut {
 /// they are at time 0. Throws InputError, "FILE: /constraints/NAME/select: ...", for what only the meshes can tell: a
 /// mesh that cannot be used, an empty selection, two pins that move one coordinate differently.
 std::unique_ptr<Model> build_model(const Scene& scene);
+
+/// The modes of a scene of a modal body. Throws InputError where there is none.
+ModalBasis build_modal_basis(const Scene& scene);
 
 TimeOptions time_options(const Scene& scene);
 

@@ -14,6 +14,16 @@ namespace taut {
 std::vector<std::unique_ptr<Energy>> add_shell(const Scene& scene, const scene::Body& body, const BodyShape& shape,
                                                Model& model);
 
+/// Adds mass and elasticity of a body to a model. Throws InputError.
+void add_material(const Scene& scene, const scene::Body& body, const BodyShape& shape, Model& model);
+
+/// Whether the scene is of a body that moves in its modes.
+bool is_modal(const Scene& scene);
+
+/// Turns a model that has only the mesh of a modal body into one of its modes, with loads and constraints. Throws
+/// InputError.
+void reduce_to_modes(const Scene& scene, const BodyShape& shape, Model& model);
+
 /// The foundation of a cover that has one.
 std::unique_ptr<Energy> foundation_of(const scene::Body& body, const BodyShape& shape);
 

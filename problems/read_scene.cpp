@@ -9,10 +9,17 @@
 #include <string_view>
 #include <utility>
 
+#include "problems/hash.h"
 #include "problems/scene_from_json.h"
 #include "problems/schema.h"
 
 namespace taut {
+
+std::string fnv1a(std::string_view bytes) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3u;
+  return fmt::format("{:016x}", hash);
+}
 
 namespace {
 
@@ -24,12 +31,6 @@ std::string file_bytes(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-std::string fnv1a(std::string_view bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3u;
-  return fmt::format("{:016x}", hash);
-}
-
 /// Calls change(file name) for every mesh file of the document and puts its answer in the name's place.
 template <class Change>
 void replace_mesh_files(Sorted& document, const Change& change) {
@@ -37,6 +38,9 @@ void replace_mesh_files(Sorted& document, const Change& change) {
     for (const char* part : {"mesh", "rest", "top"})
       if (body.contains(part) && body[part].contains("file"))
         body[part]["file"] = change(body[part]["file"].get<std::string>());
+  for (Sorted& body : document["bodies"])
+    if (body.contains("modal") && body["modal"].contains("basis"))
+      body["modal"]["basis"] = change(body["modal"]["basis"].get<std::string>());
 }
 
 std::string hash_of(Sorted document) {

@@ -30,14 +30,15 @@ class InputError : public std::runtime_error {
 /// reading adds. Angles are radians, directions have length 1, paths are resolved against the problem file.
 namespace scene {
 
-enum class Integrator { implicit_euler, bdf2, generalised_alpha, quasi_static };
+enum class Integrator { implicit_euler, bdf2, generalised_alpha, newmark, quasi_static };
 struct Time {
   Integrator integrator = Integrator::implicit_euler;
   double step = 0;  ///< s; 1 / steps for quasi_static, so that time k * step always holds
   int steps = 1;
   double spectral_radius = 0.8;
-  int halvings = 0;     ///< of a static load step that is not solved
-  int frequencies = 0;  ///< how many natural frequencies are computed at the end of a static problem
+  double beta = 0.3025, gamma = 0.6;  ///< of newmark
+  int halvings = 0;                   ///< of a static load step that is not solved
+  int frequencies = 0;                ///< how many natural frequencies are computed at the end of a static problem
 };
 
 struct Grid {
@@ -92,6 +93,11 @@ struct ThickShell {
   PrismShellOptions options;
   Vector3 direction = Vector3::UnitX();  ///< where fibre angles count from
 };
+/// Tetrahedra of a Gmsh file, linearly elastic about rest: for the modes of a modal body.
+struct Solid {
+  double young_modulus = 0;  ///< Pa
+  double poisson_ratio = 0;
+};
 /// Nodes of a thick shell at a mesh vertex; of cloth the only one, whatever is asked for.
 enum class Surface { both, bottom, top, mid };
 /// What makes a body the fine membrane of the shell before it in the list.
@@ -106,22 +112,6 @@ struct Damping {
   double mass = 0;       ///< 1/s
   double stiffness = 0;  ///< s
 };
-struct Body {
-  std::string name;
-  std::variant<Grid, MeshFile, Refinement> mesh;
-  Transform transform;
-  Rest rest;
-  double thickness = 0;  ///< m
-  double density = 0;    ///< kg/m3
-  Mass mass = Mass::lumped;
-  std::optional<Membrane> membrane;
-  std::optional<Bending> bending;
-  std::optional<ThickShell> shell;  ///< without it the body is cloth
-  std::optional<Cover> cover;
-  Damping damping;                             ///< zero: none
-  Vector3 initial_velocity = Vector3::Zero();  ///< m/s
-};
-
 struct ByIndex {
   std::vector<int> vertices;  ///< not yet compared with the mesh
 };
@@ -148,6 +138,33 @@ struct OnBoundary {};
 struct Everything {};
 /// Vertices of one body, at their transformed initial positions. Corners and edges occur on grids only.
 using Selection = std::variant<Everything, ByIndex, AtCorners, OnEdges, InBox, InBall, NearestTo, InGroup, OnBoundary>;
+
+enum class WarpRotation { exact, predictor, none };
+/// What makes a body move in a few of its modes.
+struct Modal {
+  int modes = 20;
+  std::optional<Selection> clamp;  ///< held by the modes themselves; none: the body floats
+  double damping_ratio = 0;        ///< of every mode, of critical
+  WarpRotation rotation = WarpRotation::exact;
+  std::filesystem::path basis;  ///< modes computed before; empty: none
+};
+struct Body {
+  std::string name;
+  std::variant<Grid, MeshFile, Refinement> mesh;
+  Transform transform;
+  Rest rest;
+  double thickness = 0;  ///< m
+  double density = 0;    ///< kg/m3
+  Mass mass = Mass::lumped;
+  std::optional<Membrane> membrane;
+  std::optional<Bending> bending;
+  std::optional<ThickShell> shell;  ///< without it the body is cloth
+  std::optional<Cover> cover;
+  std::optional<Solid> solid;
+  std::optional<Modal> modal;                  ///< the body moves in modes of what the other members say
+  Damping damping;                             ///< zero: none
+  Vector3 initial_velocity = Vector3::Zero();  ///< m/s
+};
 
 struct Keyframe {
   double time = 0;                        ///< s

@@ -30,6 +30,7 @@ class SceneReader : public ProbeReader {
       if (value["model"] == "wrinkled_shell") result.bodies.push_back(cover(result.bodies.back(), value));
     }
     bodies_ = &result.bodies;
+    for (std::size_t k = 0; k < result.bodies.size(); ++k) read_modal(json["bodies"], static_cast<int>(k), result);
     for (const auto& [name, value] : json["constraints"].items()) result.constraints.push_back(constraint(name, value));
     for (const auto& [name, value] : json["loads"].items()) result.loads.push_back(load(name, value));
     result.solver = solver(json["solver"]);
@@ -44,9 +45,12 @@ class SceneReader : public ProbeReader {
     result.integrator = choose<Integrator>(json["integrator"], {{"implicit_euler", Integrator::implicit_euler},
                                                                 {"bdf2", Integrator::bdf2},
                                                                 {"generalised_alpha", Integrator::generalised_alpha},
+                                                                {"newmark", Integrator::newmark},
                                                                 {"static", Integrator::quasi_static}});
     result.steps = json["steps"];
     result.spectral_radius = json["spectral_radius"];
+    result.beta = json["beta"];
+    result.gamma = json["gamma"];
     result.halvings = json["halvings"];
     result.frequencies = json["frequencies"];
     if (result.integrator == Integrator::quasi_static) {
@@ -84,7 +88,11 @@ class SceneReader : public ProbeReader {
     if (json.contains("cover") != wrinkled)
       wrinkled ? missing(pointer + "/cover", "an object (\"model\" is \"wrinkled_shell\")")
                : refuse(pointer + "/cover", "\"cover\"", "none of it unless \"model\" is \"wrinkled_shell\"");
-    if (json["model"] == "thick_shell" || (wrinkled && !json.contains("membrane") && !json.contains("bending"))) {
+    const bool either = wrinkled || json["model"] == "modal";
+    if (const auto* file = std::get_if<MeshFile>(&result.mesh); file && file->path.extension() == ".msh") {
+      result.solid = solid(json, pointer);
+      result.density = json["density"];
+    } else if (json["model"] == "thick_shell" || (either && !json.contains("membrane") && !json.contains("bending"))) {
       result.shell = shell(json, pointer);
     } else {
       check_cloth(json, pointer);
@@ -94,6 +102,41 @@ class SceneReader : public ProbeReader {
     cloth(json, result);
     result.initial_velocity = vector(json["initial_velocity"]);
     return result;
+  }
+
+  Solid solid(const Json& json, const std::string& pointer) const {
+    if (json["model"] != "modal")
+      refuse(pointer + "/model", json["model"].dump() + " with a mesh of tetrahedra", "\"modal\"");
+    check_solid(json, pointer);
+    return {json["material"]["young_modulus"], json["material"]["poisson_ratio"]};
+  }
+
+  /// Fills in Body::modal where the model says so, once bodies can be selected from.
+  void read_modal(const Json& bodies, int index, Scene& scene) const {
+    Body& body = scene.bodies[static_cast<std::size_t>(index)];
+    if (body.cover) return;
+    const Json& json = bodies[body.name];
+    const std::string pointer = "/bodies/" + body.name;
+    if (json["model"] != "modal") {
+      if (json.contains("modal")) refuse(pointer + "/modal", "\"modal\"", "none of it unless \"model\" is \"modal\"");
+      return;
+    }
+    if (scene.bodies.size() > 1)
+      refuse(pointer + "/model", "\"modal\" beside other bodies", "a modal body is alone in its scene");
+    if (scene.time.frequencies > 0)
+      refuse("/time/frequencies", std::to_string(scene.time.frequencies),
+             "0 for a modal body (taut modes prints them)");
+    if (!json.contains("modal")) missing(pointer + "/modal", "an object (\"model\" is \"modal\")");
+    const Json& part = json["modal"];
+    Modal modal;
+    modal.modes = part["modes"];
+    if (part.contains("clamp")) modal.clamp = selection(part["clamp"], index, pointer + "/modal/clamp");
+    modal.damping_ratio = part["damping_ratio"];
+    modal.rotation = choose<WarpRotation>(
+        part["rotation"],
+        {{"exact", WarpRotation::exact}, {"predictor", WarpRotation::predictor}, {"none", WarpRotation::none}});
+    if (part.contains("basis")) modal.basis = mesh_path(part["basis"], pointer + "/modal/basis");
+    body.modal = modal;
   }
 
   /// What any sheet has.

@@ -28,6 +28,15 @@ void ShellReader::check_cloth(const Json& body, const std::string& pointer) cons
   if (!body.contains("density")) missing(pointer + "/density", "a number > 0, in kg/m3");
 }
 
+void ShellReader::check_solid(const Json& body, const std::string& pointer) const {
+  refuse_keys(body, pointer, {"thickness", "vertex_thickness", "top", "layers", "membrane", "bending"},
+              "none of it with a mesh of tetrahedra");
+  if (!body.contains("density")) missing(pointer + "/density", "a number > 0, in kg/m3");
+  if (!body.contains("material")) missing(pointer + "/material", "an object");
+  if (!body["material"].contains("young_modulus"))
+    refuse(pointer + "/material", "a ply", "an isotropic material with a mesh of tetrahedra");
+}
+
 ThickShell ShellReader::shell(const Json& body, const std::string& pointer) const {
   refuse_keys(body, pointer, {"membrane", "bending"}, "none of it where \"model\" is \"thick_shell\"");
   if (body["rest"]["from"] != "initial" || body["rest"]["scale"] != 1.0)

@@ -14,6 +14,8 @@ class ShellReader : public JsonReader {
   scene::ThickShell shell(const Json& body, const std::string& pointer) const;
   /// Throws InputError for keys of thick shells and for a thickness or density that is missing.
   void check_cloth(const Json& body, const std::string& pointer) const;
+  /// Throws InputError for keys of sheets and for a density or material that is missing or not isotropic.
+  void check_solid(const Json& body, const std::string& pointer) const;
   /// The surface that a constraint, load or probe names; `otherwise` where it names none. Throws InputError where the
   /// body is not a thick shell, and, unless `inside_prisms`, for the middle of an odd number of prisms.
   scene::Surface surface(const Json& json, const scene::Body& body, const std::string& pointer,

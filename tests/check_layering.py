@@ -58,7 +58,7 @@ THIRD_PARTY = [
     ("rapidcheck*", ("tests/*",)),
     ("benchmark/*", ("tests/benchmarks/*.cpp",)),
 ]
-POSIX = re.compile(r"(sys/\w+|unistd|signal|fcntl|glob|termios|pthread|pty)\.h")  # in any .cpp, and in tests
+POSIX = re.compile(r"(sys/\w+|netinet/in|poll|unistd|signal|fcntl|glob|termios|pthread|pty)\.h")  # in any .cpp, and in tests
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 COMMENT = re.compile(r'R"(\w*)\(.*?\)\1"|/\*.*?\*/|//[^\n]*', re.DOTALL)

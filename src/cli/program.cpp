@@ -62,6 +62,8 @@ int run_program(int argc, char** argv) {
   add_list(program, code);
   add_schema(program, code);
   add_compare(program, code);
+  add_modes(program, code);
+  add_replay(program, code);
   add_compare_worker(program, code);
   try {
     program.parse(argc, argv);

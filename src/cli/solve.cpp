@@ -21,7 +21,7 @@ namespace taut {
 namespace {
 
 struct SolveArguments {
-  std::string problem, out, format;
+  std::string problem, out, format, accelerations;
   std::vector<std::string> settings;
   int threads = 0;
   double max_seconds = 0;
@@ -47,6 +47,8 @@ int exit_code(Status status) {
 int solve(const SolveArguments& arguments) {
   if (arguments.resume && arguments.out.empty())
     throw UsageError("--resume needs --out DIR, the directory of the run to go on with");
+  if (arguments.resume && !arguments.accelerations.empty())
+    throw UsageError("--record-accelerations needs a run from its beginning, without --resume");
   const std::atomic<bool>& stop_requested = stop_on_signals();
   const Scene scene = read_scene(find_problem(arguments.problem), overrides_of(arguments));
 
@@ -54,6 +56,7 @@ int solve(const SolveArguments& arguments) {
   RunOptions options;
   options.folder = arguments.out;
   options.resume = arguments.resume;
+  options.accelerations = arguments.accelerations;
   options.threads = arguments.threads;
   options.max_seconds = arguments.max_seconds;
   options.stop = &stop_requested;
@@ -132,6 +135,10 @@ void add_solve(CLI::App& program, int& code) {
   command->add_option("--format", arguments->format, "Format of the frames: vtu, obj or none; replaces output.format")
       ->type_name("FORMAT")
       ->check(CLI::IsMember({"vtu", "obj", "none"}));
+  command
+      ->add_option("--record-accelerations", arguments->accelerations,
+                   "Write the spectral accelerations of a modal body to this file (taut replay)")
+      ->type_name("FILE");
   command->add_flag("--resume", arguments->resume,
                     "Go on with the run in DIR; ends with the bits of one never interrupted");
   command->add_flag("--json", arguments->json, "Print summary.json on standard output, and nothing else there");

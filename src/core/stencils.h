@@ -35,8 +35,8 @@ class Stencils {
   std::vector<int> variables_;
 };
 
-/// No stencil is wider than this, so that loops over elements need no allocation.
-inline constexpr int max_stencil_width = 24;
+/// No stencil is wider than this, so that loops over elements need no allocation. Warped modes need one variable each.
+inline constexpr int max_stencil_width = 64;
 /// No constraint has more rows per element than this.
 inline constexpr int max_rows = 6;
 /// No convex set has more smooth scalar rows (ConvexSet::smooth_rows).

@@ -19,6 +19,9 @@
 
 namespace taut {
 
+struct ModalBasis;
+class WarpedLoad;
+
 /// A body's share of the scene's vertices and triangles. A thick shell has `levels` of vertices one over the other at
 /// each vertex of its mesh, and the triangles of its bottom, then those of its top.
 struct BodyRange {
@@ -35,7 +38,7 @@ struct PinnedVariable {
 };
 
 /// A scene as energies and constraints, with nothing in it that depends on the time integrator. Vertex v has the
-/// variables 3v, 3v+1, 3v+2.
+/// variables 3v, 3v+1, 3v+2, unless the unknowns are those of modes.
 struct Model {
   std::string name;
   std::vector<BodyRange> bodies;
@@ -74,6 +77,25 @@ struct Model {
   std::vector<std::string> notes;        ///< what a person should know before trusting the result, a line each
   /// Moves the obstacles to where they are at `time`; empty where none move.
   std::vector<std::function<void(double time)>> movers;
+
+  /// Where not null the only body moves in these modes: `positions` and `velocities` are the reduced coordinates q and
+  /// their rates, and energies and constraints are of them.
+  std::shared_ptr<const ModalBasis> modal;
+  std::vector<std::unique_ptr<Energy>> damped;  ///< of modes: what stiffness_damping borrows, no energies of the step
+  std::vector<std::unique_ptr<WarpedLoad>> warped_loads;  ///< gravity and dead loads on modes
+  /// Hold rotations at those of the predicted q; empty unless the scene asks for it.
+  std::vector<std::function<void(const Vector& predicted)>> freezers;
+
+  Model();
+  Model(Model&&) noexcept;
+  Model& operator=(Model&&) noexcept;
+  ~Model();
+  /// Positions of the vertices where the unknowns are x, 3 entries each, m.
+  Vector vertex_positions(const Vector& x) const;
+  /// Their velocities where the unknowns' rates are v, m/s.
+  Vector vertex_velocities(const Vector& x, const Vector& v) const;
+  /// Positions of the vertices at the start, m.
+  Vector start() const { return vertex_positions(positions); }
 };
 
 }  // namespace taut

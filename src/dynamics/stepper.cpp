@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "dynamics/modal/modal_energies.h"
+
 namespace taut {
 namespace {
 
@@ -42,6 +44,7 @@ std::vector<const Energy*> energies_of(const Model& model, bool dynamic) {
     for (const auto& damping : model.stiffness_damping) energies.push_back(damping.energy.get());
   }
   append(energies, model.dead_loads);
+  append(energies, model.warped_loads);
   append(energies, model.pressures);
   append(energies, model.end_moments);
   for (const auto& load : model.lagged_loads) energies.push_back(load.energy.get());
@@ -65,6 +68,9 @@ void TimeOptions::validate() const {
     throw std::invalid_argument("TimeOptions: spectral_radius must be in [0, 1], got " +
                                 std::to_string(spectral_radius));
   }
+  if (!(beta > 0) || !std::isfinite(beta) || !std::isfinite(gamma) || !(gamma > 0))
+    throw std::invalid_argument("TimeOptions: beta and gamma must be positive and finite, got " + std::to_string(beta) +
+                                " and " + std::to_string(gamma));
 }
 
 Stepper::Stepper(Model& model, TimeOptions options) : model_(model), options_(options) {
@@ -84,6 +90,7 @@ Stepper::Stepper(Model& model, TimeOptions options) : model_(model), options_(op
   for (const PinnedVariable& pin : model_.pins) problem_.fixed_variables.push_back(pin.variable);
   problem_.fixed_values.resize(static_cast<Index>(model_.pins.size()));
   problem_.initial_guess = model_.positions;
+  if (model_.modal) problem_.node_size = 1;
 
   state_.positions = model_.positions;
   state_.velocities = dynamic() ? model_.velocities : Vector(Vector::Zero(size));
@@ -121,6 +128,7 @@ void Stepper::place(double time) {
   for (const auto& mover : model_.movers) mover(time);
   const double factor = dynamic() ? 1.0 : time;
   for (const auto& load : model_.dead_loads) load->set_factor(factor);
+  for (const auto& load : model_.warped_loads) load->set_factor(factor);
   for (const auto& pressure : model_.pressures) pressure->set_factor(factor);
   for (const auto& moment : model_.end_moments) moment->set_factor(factor);
   for (const auto& load : model_.lagged_loads) load.energy->set_factor(factor);
@@ -137,6 +145,12 @@ Stepper::EndOfStep Stepper::end_of_step() const {
   } else if (options_.integrator == Integrator::bdf2) {
     const Vector origin = (4 * x - state_.previous_positions) / 3;
     end = {9 / (4 * h * h), 3 / (2 * h), origin + (h / 9) * (8 * v - 2 * state_.previous_velocities), origin};
+  } else if (options_.integrator == Integrator::newmark) {
+    const double reach = options_.beta * h * h;
+    const Vector predicted = x + h * v + (h * h * (0.5 - options_.beta)) * state_.accelerations;  // MW (A.8)
+    const Vector rate = v + (h * (1 - options_.gamma)) * state_.accelerations;                    // MW (A.9)
+    end = {1 / reach, options_.gamma / (options_.beta * h), predicted,
+           predicted - (options_.beta * h / options_.gamma) * rate};
   } else {
     // With A the auxiliary acceleration, (1 - am) A' + am A = (1 - af) a' + af a, and Newmark's formulas in A:
     // x' = x + h v + h^2 ((1/2 - beta) A + beta A'), v' = v + h ((1 - gamma) A + gamma A').
@@ -181,6 +195,10 @@ const Problem& Stepper::prepare(double part) {
     for (const auto& damping : model_.stiffness_damping) {
       damping.energy->set_reference(damping.beta * end.rate, state_.positions, end.origin);
     }
+  }
+  for (const auto& freeze : model_.freezers) {
+    const double h = options_.step;
+    freeze(state_.positions + h * state_.velocities + (0.5 * h * h) * state_.accelerations);
   }
   for (const auto& load : model_.lagged_loads) {
     Vector forces = Vector::Zero(state_.positions.size());
@@ -240,6 +258,7 @@ std::vector<std::pair<std::string, double>> Stepper::energies() const {
   const auto add = [&](const Energy& energy) { list.emplace_back(energy.name(), value_at(energy, state_.positions)); };
   for (const auto& energy : model_.elastic) add(*energy);
   for (const auto& load : model_.dead_loads) add(*load);
+  for (const auto& load : model_.warped_loads) add(*load);
   for (const auto& pressure : model_.pressures) add(*pressure);
   return list;
 }

@@ -21,21 +21,25 @@ namespace taut {
 ///   motion holds at the end of the step and the blend is in an auxiliary acceleration. spectral_radius = 1 is the
 ///   average acceleration (trapezoidal) rule: it keeps the energy of free vibrations, but constraint forces then ring
 ///   from step to step without end.
+/// - newmark [Newmark 1959] with any beta > 0 and gamma, in displacements (MW (A.7)-(A.11) divided by beta h^2). Of
+/// beta
+///   = 1/4, gamma = 1/2, the average acceleration, the remark above holds; the default decays.
 /// - quasi_static: no inertia, no damping, no velocities; loads and scripts run with the load fraction from 0 to 1.
 ///
-/// The two of second order start with a step of constant acceleration (Newmark with beta = 1/2, gamma = 1): third-order
+/// Those of second order start with a step of constant acceleration (Newmark with beta = 1/2, gamma = 1): third-order
 /// in position, second-order in velocity, exact in free fall, and it needs no initial acceleration, which constraints
 /// that are active at the start would make wrong.
 ///
 /// First order whatever the integrator: loads without a potential (wind), which are held as at the start of the step,
 /// and stiffness damping, whose stiffness is that of the start of the step.
-enum class Integrator { implicit_euler, bdf2, generalised_alpha, quasi_static };
+enum class Integrator { implicit_euler, bdf2, generalised_alpha, newmark, quasi_static };
 
 struct TimeOptions {
   Integrator integrator = Integrator::implicit_euler;
   double step = 0.01;  ///< s; for quasi_static 1/steps
   int steps = 1;
-  double spectral_radius = 0.8;  ///< of generalised alpha at infinite frequency, in [0, 1]
+  double spectral_radius = 0.8;       ///< of generalised alpha at infinite frequency, in [0, 1]
+  double beta = 0.3025, gamma = 0.6;  ///< of newmark
   /// Throws std::invalid_argument naming the field.
   void validate() const;
 };

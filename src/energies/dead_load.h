@@ -14,6 +14,8 @@ class DeadLoad final : public Energy {
 
   /// Replaces the forces (same size).
   void set_forces(const Vector& forces);
+  /// As given, without the factor, N.
+  const Vector& forces() const { return forces_; }
   /// Multiplies the forces; static load steps go from 0 to 1.
   void set_factor(double factor) { factor_ = factor; }
 

@@ -35,7 +35,7 @@ void Inertia::add_element(std::span<const int> nodes, std::span<const double> ma
     throw std::invalid_argument("Inertia::add_element: expected " + std::to_string(nodes_ * nodes_) +
                                 " entries of the mass matrix, got " + std::to_string(mass.size()));
   }
-  stencils_.add_vertices(nodes);
+  axes_ == 3 ? stencils_.add_vertices(nodes) : stencils_.add(nodes);
   mass_.insert(mass_.end(), mass.begin(), mass.end());
 }
 
@@ -49,8 +49,8 @@ void Inertia::add_product(const Vector& v, Vector& out) const {
     const int* variables = stencils_[element];
     for (int i = 0; i < nodes_; ++i) {
       for (int j = 0; j < nodes_; ++j) {
-        for (int axis = 0; axis < 3; ++axis)
-          out[variables[3 * i + axis]] += mass(element, i, j) * v[variables[3 * j + axis]];
+        for (int axis = 0; axis < axes_; ++axis)
+          out[variables[axes_ * i + axis]] += mass(element, i, j) * v[variables[axes_ * j + axis]];
       }
     }
   }
@@ -65,16 +65,16 @@ double Inertia::kinetic_energy(const Vector& velocity) const {
 double Inertia::evaluate(Index element, const double* x, double* gradient, double* hessian,
                          Curvature /*curvature*/) const {
   const int* variables = stencils_[element];
-  const int width = 3 * nodes_;
+  const int width = axes_ * nodes_;
   std::array<double, max_stencil_width> offset, force;
   for (int i = 0; i < width; ++i) offset[i] = x[i] - target_[variables[i]];
   double value = 0;
   for (int i = 0; i < nodes_; ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
+    for (int axis = 0; axis < axes_; ++axis) {
       double sum = 0;
-      for (int j = 0; j < nodes_; ++j) sum += mass(element, i, j) * offset[3 * j + axis];
-      force[3 * i + axis] = coefficient_ * sum;
-      value += 0.5 * force[3 * i + axis] * offset[3 * i + axis];
+      for (int j = 0; j < nodes_; ++j) sum += mass(element, i, j) * offset[axes_ * j + axis];
+      force[axes_ * i + axis] = coefficient_ * sum;
+      value += 0.5 * force[axes_ * i + axis] * offset[axes_ * i + axis];
     }
   }
   if (gradient) std::copy_n(force.begin(), width, gradient);
@@ -82,8 +82,8 @@ double Inertia::evaluate(Index element, const double* x, double* gradient, doubl
     std::fill_n(hessian, width * width, 0.0);
     for (int i = 0; i < nodes_; ++i) {
       for (int j = 0; j < nodes_; ++j) {
-        for (int axis = 0; axis < 3; ++axis)
-          hessian[3 * i + axis + (3 * j + axis) * width] = coefficient_ * mass(element, i, j);
+        for (int axis = 0; axis < axes_; ++axis)
+          hessian[axes_ * i + axis + (axes_ * j + axis) * width] = coefficient_ * mass(element, i, j);
       }
     }
   }

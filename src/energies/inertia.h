@@ -20,8 +20,9 @@ class Inertia final : public Energy {
   /// Linear triangles integrated exactly: surface_density * area / 12 * [2 1 1; 1 2 1; 1 1 2].
   static Inertia consistent(std::string name, const std::vector<RestTriangle>& triangles, double surface_density);
 
-  /// No elements yet, of `nodes` nodes each (at most 8).
-  Inertia(std::string name, int nodes) : name_(std::move(name)), nodes_(nodes), stencils_(3 * nodes) {}
+  /// No elements yet, of `nodes` nodes each (at most 8) with `axes` variables a node: 3 coordinates, or 1 of a mode.
+  Inertia(std::string name, int nodes, int axes = 3)
+      : name_(std::move(name)), nodes_(nodes), axes_(axes), stencils_(axes * nodes) {}
   /// Appends an element on these nodes; `mass` is its symmetric nodes x nodes mass matrix, kg, for each coordinate.
   void add_element(std::span<const int> nodes, std::span<const double> mass);
 
@@ -42,7 +43,7 @@ class Inertia final : public Energy {
   double mass(Index element, int i, int j) const { return mass_[(element * nodes_ + i) * nodes_ + j]; }
 
   std::string name_;
-  int nodes_;
+  int nodes_, axes_;
   Stencils stencils_;
   std::vector<double> mass_;  // kg, nodes x nodes an element
   double coefficient_ = 0;

@@ -43,7 +43,7 @@ CheckReport check_frames(const Scene& scene, const FrameOptions& options) {
       const Frame frame = read_frame(file.path);
       const std::vector<std::string> problems = misfits(frame, *model);
       for (const std::string& problem : problems) report.unusable.push_back(file.path.string() + ": " + problem);
-      if (frame.positions.size() != model->positions.size() || !frame.positions.allFinite()) continue;
+      if (frame.positions.size() != model->start().size() || !frame.positions.allFinite()) continue;
       FrameVerdict verdict{file.path.string(), file.number, clock.time_of(file.number), {}};
       verdict.verdicts = judge.constraints(frame.positions, verdict.time);
       for (Verdict& faces : judge.faces(frame.positions, options.largest_fold))

@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "dynamics/modal/modal_basis.h"
 #include "problems/build.h"
 #include "solvers/curvature.h"
 #include "study/check.h"
@@ -58,6 +59,7 @@ class RunCheck {
   Tolerances tolerances_;
   PositionJudge judge_;
   SurfaceFields fields_;
+  Vector coordinates_;  // of a modal body in the last frame
   CheckReport report_;
 };
 
@@ -68,7 +70,8 @@ RunCheck::RunCheck(const fs::path& folder, std::optional<double> tolerance)
       stepper_(*model_, time_options(run_.scene)),
       tolerances_(run_.scene.solver.tolerance),
       judge_(*model_, tolerance.value_or(tolerances_.feasibility)),
-      fields_(*model_) {
+      fields_(*model_),
+      coordinates_(model_->positions) {
   if (tolerance) tolerances_.feasibility = *tolerance;
 }
 
@@ -155,23 +158,35 @@ void RunCheck::check_frame(const fs::path& file, int step) {
   for (const std::string& problem : problems) cannot(file.string() + ": " + problem);
   if (!problems.empty()) return;
 
+  Vector velocities = Vector::Zero(frame.positions.size());
+  if (!frame.point_fields.empty() && frame.point_fields[0].name == "velocity") {
+    velocities = Eigen::Map<const Vector>(frame.point_fields[0].values.data(), velocities.size());
+  }
   State state;
   state.step = step;
-  state.positions = state.previous_positions = frame.positions;
-  state.velocities = state.accelerations = state.previous_velocities = state.auxiliary_accelerations =
-      Vector::Zero(frame.positions.size());
-  if (!frame.point_fields.empty() && frame.point_fields[0].name == "velocity") {
-    state.velocities = Eigen::Map<const Vector>(frame.point_fields[0].values.data(), state.velocities.size());
+  state.positions = frame.positions;
+  state.velocities = velocities;
+  if (model_->modal) {
+    // Frames have the vertices of a modal body; what they say is only true where the modes can take them there.
+    state.positions = coordinates_ = model_->modal->coordinates(frame.positions, coordinates_);
+    state.velocities = model_->modal->rates(coordinates_, velocities);
+    const double off = (model_->modal->positions(coordinates_) - frame.positions).lpNorm<Eigen::Infinity>();
+    if (!agree(off, 0, 1))
+      find(fmt::format("{}: its positions are {:.6g} m from any the modes can reach", file.string(), off));
   }
+  state.previous_positions = state.positions;
+  state.accelerations = state.previous_velocities = state.auxiliary_accelerations =
+      Vector::Zero(state.positions.size());
   stepper_.restore(std::move(state));
   report_.frames.push_back(
       {file.string(), step, stepper_.time(), judge_.constraints(frame.positions, stepper_.time())});
   check_stretches(frame, file.string());
   if (step == 0) {
-    if (frame.positions != model_->positions) find(file.string() + ": is not how the problem begins");
+    if (frame.positions != model_->start()) find(file.string() + ": is not how the problem begins");
     return;
   }
-  if (step == run_.checkpoint.state.step && frame.positions != run_.checkpoint.state.positions) {
+  if (step == run_.checkpoint.state.step &&
+      frame.positions != model_->vertex_positions(run_.checkpoint.state.positions)) {
     find(file.string() + ": its positions are not those of checkpoint.bin");
   }
   const StepRecord& record = run_.steps[static_cast<std::size_t>(step - 1)];
@@ -228,7 +243,8 @@ bool RunCheck::checkpoint_is_finite() {
   const State& state = run_.checkpoint.state;
   for (Index i = 0; i < state.positions.size(); ++i) {
     if (std::isfinite(state.positions[i])) continue;
-    cannot("checkpoint.bin: " + vertex_name(*model_, i / 3) + " is not finite");
+    cannot("checkpoint.bin: " + (model_->modal ? "mode " + std::to_string(i + 1) : vertex_name(*model_, i / 3)) +
+           " is not finite");
     return false;
   }
   const std::size_t constraints = model_->constraints.size();

@@ -112,7 +112,7 @@ ProblemPlan plan_problem(const std::filesystem::path& file, const EntryChoice& c
   plan.file = file;
   const std::string& reference = choice.reference.empty() ? choice.solvers.front() : choice.reference;
   plan.reference = plan_entry(file, choice, reference, {}, nullptr);
-  plan.size = diagonal(build_model(plan.reference.scene)->positions);
+  plan.size = diagonal(build_model(plan.reference.scene)->start());
   for (const std::string& solver : choice.solvers) {
     for (const Overrides& varied : combinations(choice.variations)) {
       if (choice.tolerances.empty()) plan.entries.push_back(plan_entry(file, choice, solver, varied, nullptr));

@@ -53,7 +53,7 @@ int carry_out(const CompareJob& job, const fs::path& folder) {
     if (job.records) write_checkpoint(step_file(states, step), {scene.hash, step, state_arrays(state), {}});
     const StepTrial trial = trials.run(state);
     write_checkpoint(step_file(folder / solutions_folder, trial.step),
-                     {scene.hash, trial.step, solution_arrays(trial.result), {}});
+                     {scene.hash, trial.step, solution_arrays(trial.result, trials.model()), {}});
     lines.append(trial_line(trial));
     if (!own_trajectory) continue;
     if (!trial.result.x.allFinite() || (job.records && trial.judged != Status::solved)) break;

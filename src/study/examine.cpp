@@ -130,7 +130,8 @@ std::string triangle_name(const Model& model, Index triangle) {
 void name_for_people(Residuals& residuals, const Problem& problem, const Model& model) {
   constexpr std::string_view prefix = "vertex ";
   if (residuals.worst_node.starts_with(prefix)) {
-    residuals.worst_node = vertex_name(model, std::stol(residuals.worst_node.substr(prefix.size())));
+    const long node = std::stol(residuals.worst_node.substr(prefix.size()));
+    residuals.worst_node = model.modal ? "mode " + std::to_string(node + 1) : vertex_name(model, node);
   }
   if (problem.fixed_variables.empty()) return;
   Violation& pins = residuals.violations.back();

@@ -145,8 +145,9 @@ Frame read_frame(const fs::path& file) {
 }
 
 std::vector<std::string> misfits(const Frame& frame, const Model& model) {
-  if (frame.positions.size() != model.positions.size()) {
-    return {fmt::format("has {} vertices, the scene has {}", frame.positions.size() / 3, model.positions.size() / 3)};
+  const Index size = model.start().size();
+  if (frame.positions.size() != size) {
+    return {fmt::format("has {} vertices, the scene has {}", frame.positions.size() / 3, size / 3)};
   }
   std::vector<std::string> problems;
   Index not_finite = 0;

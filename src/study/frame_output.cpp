@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "constraints/obstacle.h"
+#include "dynamics/modal/warped_position.h"
 #include "files/obj.h"
 #include "files/svg_picture.h"
 
@@ -53,6 +54,11 @@ std::string extension_of(scene::FrameFormat format) {
 
 std::vector<int> pinned_vertices(const Model& model) {
   std::set<int> vertices;
+  for (const auto& constraint : model.constraints) {
+    const auto* positions = dynamic_cast<const WarpedPosition*>(constraint.get());
+    if (!positions) continue;
+    for (const auto& held : positions->held()) vertices.insert(held.node);
+  }
   for (const PinnedVariable& pin : model.pins) vertices.insert(pin.variable / 3);
   return {vertices.begin(), vertices.end()};
 }
@@ -146,7 +152,7 @@ void FrameOutput::write_frame(const State& state) {
   if (extension_ == ".vtu") {
     write_vtu(folder_ / file, fields_.frame(state, time));
   } else {
-    write_obj(folder_ / file, state.positions, model_.triangles);
+    write_obj(folder_ / file, model_.vertex_positions(state.positions), model_.triangles);
   }
   if (frames_.empty() || frames_.back().second != file) frames_.emplace_back(time, file);
 }
@@ -167,9 +173,9 @@ void FrameOutput::write_modes(const State& state, const std::vector<NaturalMode>
 
 std::string FrameOutput::write_picture(const State& state) const try {
   Picture picture;
-  picture.positions = state.positions;
+  picture.positions = model_.vertex_positions(state.positions);
   picture.triangles = &model_.triangles;
-  picture.triangle_values = fields_.largest_stretch(state.positions);
+  picture.triangle_values = fields_.largest_stretch(picture.positions);
   std::tie(picture.low, picture.high) = colour_range(picture.triangle_values, fields_.upper_limit());
   const bool is_static = scene_.time.integrator == scene::Integrator::quasi_static;
   picture.title = fmt::format("{}, {:.4g} {}", scene_.name, time_of(state.step), is_static ? "of the load" : "s");

@@ -1,9 +1,12 @@
 #include "study/probes.h"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+
+#include "dynamics/modal/warped_position.h"
 
 namespace taut {
 namespace {
@@ -25,6 +28,30 @@ Vector gradient_of(const Problem& problem, const Vector& x) {
   return sum;
 }
 
+/// The forces of the holders on the vertices of a modal body: what balances the gradient of the energies, N.
+Vector holding_forces(const Problem& problem, const Model& model, const Vector& x) {
+  const Vector gradient = gradient_of(problem, x);
+  std::vector<WarpedPosition::Held> held;
+  Matrix rows(0, x.size());
+  for (const auto& constraint : model.constraints) {
+    const auto* positions = dynamic_cast<const WarpedPosition*>(constraint.get());
+    if (!positions) continue;
+    for (Index k = 0; k < positions->stencils().count(); ++k) {
+      double value = 0;
+      Vector row(x.size());
+      positions->evaluate(k, x.data(), &value, row.data());
+      rows.conservativeResize(rows.rows() + 1, Eigen::NoChange);
+      rows.bottomRows(1) = row.transpose();
+      held.push_back(positions->held()[static_cast<std::size_t>(k)]);
+    }
+  }
+  Vector forces = Vector::Zero(model.modal->rest.size());
+  if (held.empty()) return forces;
+  const Vector along = rows.transpose().colPivHouseholderQr().solve(gradient);
+  for (std::size_t k = 0; k < held.size(); ++k) forces[3 * held[k].node + held[k].axis] += along[static_cast<Index>(k)];
+  return forces;
+}
+
 /// The elastic energy whose elements are in a body, J.
 double elastic_energy(const Model& model, const BodyRange& body, const Vector& x) {
   std::array<double, max_stencil_width> local;
@@ -32,7 +59,7 @@ double elastic_energy(const Model& model, const BodyRange& body, const Vector& x
   for (const auto& energy : model.elastic) {
     const Stencils& stencils = energy->stencils();
     for (Index element = 0; element < stencils.count(); ++element) {
-      const int vertex = stencils[element][0] / 3;
+      const int vertex = model.modal ? body.first_vertex : stencils[element][0] / 3;
       if (vertex < body.first_vertex || vertex >= body.first_vertex + body.vertices) continue;
       stencils.gather(element, x, local.data());
       sum += energy->evaluate(element, local.data(), nullptr, nullptr, Curvature::exact);
@@ -98,16 +125,17 @@ std::vector<double> probe_values(const Scene& scene, const Model& model, const P
                                  const std::vector<NaturalMode>& modes) {
   std::vector<double> values;
   std::optional<Vector> gradient;
+  const Vector vertices = model.vertex_positions(x);
   for (std::size_t k = 0; k < scene.output.probes.size(); ++k) {
     const scene::Probe& probe = scene.output.probes[k];
     const std::vector<int>& nodes = model.probed[k];
     const auto mean_displacement = [&] {
-      return Vector3(sum_over(nodes, x - model.positions) / static_cast<double>(nodes.size()));
+      return Vector3(sum_over(nodes, vertices - model.start()) / static_cast<double>(nodes.size()));
     };
     double value = 0;
     switch (probe.quantity) {
       case Quantity::position:
-        value = sum_over(nodes, x)[probe.axis] / static_cast<double>(nodes.size());
+        value = sum_over(nodes, vertices)[probe.axis] / static_cast<double>(nodes.size());
         break;
       case Quantity::displacement:
         value = mean_displacement()[probe.axis];
@@ -116,7 +144,7 @@ std::vector<double> probe_values(const Scene& scene, const Model& model, const P
         value = mean_displacement().norm();
         break;
       case Quantity::force:
-        if (!gradient) gradient = gradient_of(problem, x);
+        if (!gradient) gradient = model.modal ? holding_forces(problem, model, x) : gradient_of(problem, x);
         value = sum_over(nodes, *gradient)[probe.axis];
         break;
       case Quantity::energy:
@@ -125,7 +153,7 @@ std::vector<double> probe_values(const Scene& scene, const Model& model, const P
       case Quantity::resultant:
       case Quantity::stress:
       case Quantity::stretch:
-        value = mean_shell_value(model, probe, nodes, x);
+        value = mean_shell_value(model, probe, nodes, vertices);
         break;
       case Quantity::frequency:
         value = probe.mode <= static_cast<int>(modes.size()) ? modes[static_cast<std::size_t>(probe.mode) - 1].frequency

@@ -10,6 +10,7 @@
 
 #include "core/stopwatch.h"
 #include "problems/build.h"
+#include "study/acceleration_record.h"
 #include "study/examine.h"
 #include "study/frame_output.h"
 #include "study/load_step.h"
@@ -29,6 +30,8 @@ void check(const RunOptions& options) {
   if (!(options.max_seconds >= 0)) throw std::invalid_argument("RunOptions: max_seconds must be at least 0");
   if (options.threads < 0) throw std::invalid_argument("RunOptions: threads must be at least 0");
   if (options.resume && options.folder.empty()) throw std::invalid_argument("RunOptions: resume needs a folder");
+  if (options.resume && !options.accelerations.empty())
+    throw std::invalid_argument("RunOptions: accelerations are recorded from the beginning, not with resume");
 }
 
 Budget budget_of(const RunOptions& options) {
@@ -74,6 +77,7 @@ class Run {
   Solver* solver_ = nullptr;
   std::optional<RunFolder> folder_;
   std::optional<FrameOutput> frames_;
+  std::optional<AccelerationRecord> accelerations_;
   std::optional<State> before_;  // what the last step started from
   RunSummary summary_;           // of the finished steps
   Seconds checkpoint_cost_{0};
@@ -120,6 +124,7 @@ bool Run::begin() {
     before_ = from->before;
     stepper_->restore(from->state);
   }
+  if (!options_.accelerations.empty()) accelerations_.emplace(scene_, options_.accelerations);
   if (!folder_) return true;
   const Stopwatch watch(summary_.seconds.output);
   if (from) {
@@ -169,8 +174,9 @@ bool Run::step() {
     summary_.worst_elements_step = record.step;
   }
   if (usable) {
-    if (folder_) before_ = stepper_->state();
+    if (folder_ || accelerations_) before_ = stepper_->state();
     stepper_->accept(result);
+    if (accelerations_) accelerations_->take(*before_, stepper_->state());
     record.time = stepper_->time();
     const Stopwatch watch(record.judging);
     record.energies = stepper_->energies();
@@ -275,6 +281,7 @@ void Run::take_totals() {
 
 RunSummary Run::finish() {
   take_totals();
+  if (accelerations_) accelerations_->finish();
   RunSummary ended = summary_;
   if (stopped_ != Status::solved) {
     ended.status = stopped_;

@@ -16,11 +16,12 @@ namespace taut {
 struct RunOptions {
   std::filesystem::path folder;  ///< empty: nothing is written
   bool resume = false;           ///< go on with the run in `folder`; from the beginning where that is empty or missing
-  int threads = 0;               ///< 0: those of the run that is resumed, or else the cores of the machine
-  double max_seconds = 0;        ///< wall clock of this call; 0: no limit
-  const std::atomic<bool>* stop = nullptr;         ///< raised to interrupt the run within one linear solve
-  Solver* solver = nullptr;                        ///< borrowed; null: the one that the scene names
-  std::string version;                             ///< of the calling program, for the summary
+  std::filesystem::path accelerations;      ///< file for the spectral accelerations of a modal body; empty: none
+  int threads = 0;                          ///< 0: those of the run that is resumed, or else the cores of the machine
+  double max_seconds = 0;                   ///< wall clock of this call; 0: no limit
+  const std::atomic<bool>* stop = nullptr;  ///< raised to interrupt the run within one linear solve
+  Solver* solver = nullptr;                 ///< borrowed; null: the one that the scene names
+  std::string version;                      ///< of the calling program, for the summary
   std::function<void(int steps_done)> on_start;    ///< before the first step
   std::function<void(const StepRecord&)> on_step;  ///< after every finished step
 };

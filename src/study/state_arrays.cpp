@@ -45,8 +45,8 @@ State state_from(int step, const NamedArrays& arrays) {
   }
 }
 
-NamedArrays solution_arrays(const Result& result) {
-  NamedArrays arrays{{"positions", array(result.x)}};
+NamedArrays solution_arrays(const Result& result, const Model& model) {
+  NamedArrays arrays{{"positions", array(model.vertex_positions(result.x))}};
   put_multipliers(result.multipliers, arrays);
   return arrays;
 }

@@ -58,6 +58,7 @@ class StepTrials {
 
   /// The state that the scene starts from, or that accept() has reached.
   const State& state() const;
+  const Model& model() const { return *model_; }
   /// The step that follows `state`. Throws std::invalid_argument where the state's sizes do not fit the scene.
   StepTrial run(const State& state);
   /// Takes the latest result as the end of its step; state() is then the next one to run from.

@@ -117,14 +117,15 @@ Field SurfaceFields::coupling_force(const State& state) const {
 
 Frame SurfaceFields::frame(const State& state, double time) const {
   const std::size_t cells = model_.triangles.size();
-  const Vector moved = state.positions - model_.positions;
-  Field velocity{"velocity", 3, {state.velocities.begin(), state.velocities.end()}}, body{"body", 1, {}},
+  const Vector positions = model_.vertex_positions(state.positions), moved = positions - model_.start(),
+               velocities = model_.vertex_velocities(state.positions, state.velocities);
+  Field velocity{"velocity", 3, {velocities.begin(), velocities.end()}}, body{"body", 1, {}},
       displacement{"displacement", 3, {moved.begin(), moved.end()}};
   for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
     body.values.insert(body.values.end(), static_cast<std::size_t>(model_.bodies[i].vertices), static_cast<double>(i));
   }
   Field sigma_max{"sigma_max", 1, {}}, sigma_min{"sigma_min", 1, {}};
-  for (const Vector2& value : stretches(state.positions)) {
+  for (const Vector2& value : stretches(positions)) {
     sigma_max.values.push_back(value[0]);
     sigma_min.values.push_back(value[1]);
   }
@@ -144,8 +145,8 @@ Frame SurfaceFields::frame(const State& state, double time) const {
     }
   }
   Frame frame{
-      time, state.positions, model_.triangles, {velocity, body, displacement}, {sigma_max, sigma_min, tension, active}};
-  if (stresses_) add_stresses(model_, state.positions, frame.cell_fields);
+      time, positions, model_.triangles, {velocity, body, displacement}, {sigma_max, sigma_min, tension, active}};
+  if (stresses_) add_stresses(model_, positions, frame.cell_fields);
   if (!model_.equalities.empty()) frame.point_fields.push_back(coupling_force(state));
   return frame;
 }

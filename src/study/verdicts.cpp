@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 
+#include "dynamics/modal/warped_position.h"
 #include "study/examine.h"
 
 namespace taut {
@@ -46,9 +47,17 @@ Verdict verdict_over(std::string constraint, std::vector<double> values, double 
   return verdict;
 }
 
+/// At positions of vertices.
 std::vector<double> violations(const Constraint& constraint, const Vector& x) {
   std::array<double, max_stencil_width> local;
   std::vector<double> values;
+  if (const auto* warped = dynamic_cast<const WarpedPosition*>(&constraint)) {
+    for (std::size_t k = 0; k < warped->held().size(); ++k) {
+      const auto [node, axis] = warped->held()[k];
+      values.push_back(std::abs(x[3 * node + axis] - warped->targets()[static_cast<Index>(k)]));
+    }
+    return values;
+  }
   for (Index element = 0; element < constraint.stencils().count(); ++element) {
     constraint.stencils().gather(element, x, local.data());
     values.push_back(constraint.violation(element, local.data()));
@@ -77,8 +86,9 @@ std::vector<std::vector<int>> unfolded_neighbours(const std::vector<Triangle>& t
 }  // namespace
 
 PositionJudge::PositionJudge(Model& model, double tolerance)
-    : model_(model), tolerance_(tolerance), neighbours_(unfolded_neighbours(model.triangles, model.positions)) {
-  const Eigen::Map<const Eigen::Matrix3Xd> points(model.positions.data(), 3, model.positions.size() / 3);
+    : model_(model), tolerance_(tolerance), neighbours_(unfolded_neighbours(model.triangles, model.start())) {
+  const Vector start = model.start();
+  const Eigen::Map<const Eigen::Matrix3Xd> points(start.data(), 3, start.size() / 3);
   size_ = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
 }
 

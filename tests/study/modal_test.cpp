@@ -1,0 +1,132 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "dynamics/modal/modal_basis.h"
+#include "files/atomic_file.h"
+#include "problems/build.h"
+#include "problems/modal_file.h"
+#include "study/acceleration_stream.h"
+#include "study/check.h"
+#include "study/run.h"
+#include "study/step_trial.h"
+#include "tests/files/temporary_folder.h"
+#include "tests/study/modal_scene.h"
+
+namespace taut {
+namespace {
+
+using testing::HasSubstr;
+
+class Modal : public FilesTest {
+ protected:
+  Scene scene(const Overrides& overrides = {}, int modes = 12) const {
+    return modal_scene(path("."), overrides, modes);
+  }
+  static std::string text_of(const std::function<void()>& action) {
+    try {
+      action();
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "";
+  }
+};
+
+TEST_F(Modal, ARunIsSolvedAndItsCheckFindsNothing) {
+  RunOptions options;
+  options.folder = path("out");
+  options.threads = 1;
+  const RunSummary summary = run(scene(), options);
+  EXPECT_EQ(summary.status, Status::solved) << summary.message;
+  EXPECT_EQ(summary.steps_done, 6);
+  EXPECT_GT(summary.probes[0].value, 0);  // the hand pulls up
+  const CheckReport report = check_run(path("out"), {});
+  EXPECT_EQ(report.verdict(), CheckVerdict::within)
+      << testing::PrintToString(report.findings) << testing::PrintToString(report.unusable);
+  EXPECT_EQ(report.frames.size(), 4);
+}
+
+/// The same step solved by four methods that share nothing but the Problem.
+TEST_F(Modal, SolversAgreeOnEveryStep) {
+  const Scene reference = scene();
+  const std::vector<State> states = states_of(reference, 6);
+  ASSERT_EQ(states.size(), 6);
+  const double size = 0.3;
+  std::vector<std::vector<StepTrial>> all;
+  for (const char* method : {"augmented_lagrangian", "null_space", "ipopt", "nlopt"}) {
+    const Scene other = scene({{"solver.method", method}});
+    const auto solver = build_solver(other, 1);
+    all.push_back(compare_steps(other, states, *solver));
+    for (const StepTrial& trial : all.back()) EXPECT_EQ(trial.judged, Status::solved) << method << " " << trial.step;
+  }
+  const auto basis = build_modal_basis(reference);
+  for (std::size_t k = 0; k < 6; ++k) {
+    const Vector x = basis.positions(all[0][k].result.x);
+    for (std::size_t s = 1; s < all.size(); ++s)
+      EXPECT_LE((basis.positions(all[s][k].result.x) - x).lpNorm<Eigen::Infinity>(), 1e-6 * size) << s << " " << k;
+  }
+}
+
+TEST_F(Modal, FrozenRotationsMakeTheStepLinear) {
+  const Scene frozen = scene({{"bodies.ruler.modal.rotation", "predictor"}});
+  RunOptions options;
+  options.threads = 1;
+  const RunSummary summary = run(frozen, options);
+  EXPECT_EQ(summary.status, Status::solved) << summary.message;
+}
+
+TEST_F(Modal, ABasisIsSavedAndReloadedWithItsBitsAndRefusedByOthers) {
+  const ModalBasis basis = build_modal_basis(scene({}, 14));
+  write_basis(path("basis"), basis);
+  const std::string name = path("basis").string();
+  const ModalBasis again = build_modal_basis(scene({{"bodies.ruler.modal.basis", name}}));
+  EXPECT_EQ(again.shapes, basis.shapes.leftCols(12));
+  EXPECT_EQ(again.eigenvalues, basis.eigenvalues.head(12));
+  const auto refusal = [&](Overrides overrides, int modes = 12) {
+    overrides.emplace_back("bodies.ruler.modal.basis", name);
+    return text_of([&] { build_modal_basis(scene(overrides, modes)); });
+  };
+  EXPECT_THAT(refusal({{"bodies.ruler.mesh.grid.cells", "[12,3]"}}), HasSubstr("another mesh"));
+  EXPECT_THAT(refusal({{"bodies.ruler.density", "7000"}}), HasSubstr("another material"));
+  EXPECT_THAT(refusal({{"bodies.ruler.modal.clamp", "{\"edges\": [\"x1\"]}"}}), HasSubstr("another material"));
+  EXPECT_THAT(refusal({}, 15), HasSubstr("14 modes"));
+  std::string bytes = read_bytes(path("basis"));
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+  write_atomically(path("basis"), bytes);
+  EXPECT_THAT(refusal({}), HasSubstr("CRC-32"));
+}
+
+TEST_F(Modal, WhatItCannotDoIsRefused) {
+  const auto refusal = [&](const Overrides& overrides) { return text_of([&] { build_model(scene(overrides)); }); };
+  EXPECT_THAT(refusal({{"constraints.floor", R"({"type": "half_space", "body": "ruler", "point": [0,0,-1],
+                        "normal": [0,0,1]})"}}),
+              HasSubstr("/constraints/floor/type"));
+  EXPECT_THAT(refusal({{"loads.wind", R"({"type": "wind", "body": "ruler", "velocity": [1,0,0]})"}}),
+              HasSubstr("follows the body"));
+  EXPECT_THAT(refusal({{"constraints.hand.select", "{\"corners\": [\"x0y0\"]}"}}), HasSubstr("which the modes clamp"));
+  EXPECT_THAT(refusal({{"constraints.hand.select", "{\"edges\": [\"x1\"]}"},
+                       {"constraints.hand.axes", "xyz"},
+                       {"constraints.hand.surface", "both"}}),
+              HasSubstr("at most one for each of the 12 modes"));
+}
+
+TEST_F(Modal, RecordedAccelerationsReplayToTheRunsOwnTrajectory) {
+  RunOptions options;
+  options.threads = 1;
+  options.folder = path("out");
+  options.accelerations = path("run.acc");
+  ASSERT_EQ(run(scene(), options).status, Status::solved);
+  const RebuiltStream rebuilt = rebuild(read_stream(read_bytes(path("run.acc"))), Fill::zero);
+  ASSERT_EQ(rebuilt.states.size(), 7);
+  const Vector q = RunFolder(path("out")).continuation(scene(), 0)->state.positions;
+  EXPECT_LE((rebuilt.states.back().q - q).norm(), 1e-12 * q.norm());
+}
+
+TEST_F(Modal, OnlyNewmarkIsRecorded) {
+  RunOptions options;
+  options.accelerations = path("run.acc");
+  EXPECT_THAT(text_of([&] { run(scene({{"time.integrator", "bdf2"}}), options); }), HasSubstr("/time/integrator"));
+}
+
+}  // namespace
+}  // namespace taut
