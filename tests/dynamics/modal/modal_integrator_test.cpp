@@ -5,7 +5,7 @@
 #include <Eigen/SVD>
 #include <cmath>
 
-#include "dynamics/modal/small_basis.h"
+#include "tests/dynamics/modal/small_basis.h"
 
 namespace taut {
 namespace {
