@@ -135,6 +135,30 @@ TEST_F(ModalBody, GhostForcesOfAFreeSpinningBodyAreMeasured) {
   }
 }
 
+/// A membrane has modes where it is stretched: omega = pi sqrt(2) c/a of the first, c^2 = tension over density, and
+/// none where it is slack.
+TEST_F(ModalBody, AMembraneHasModesUnderTensionOnly) {
+  const auto drum = [&](double scale) {
+    std::ofstream(path("drum.json")) << fmt::format(
+        R"({{ "format": 1, "time": {{ "integrator": "newmark", "step": 0.001, "steps": 1 }}, "bodies": {{ "drum": {{
+          "model": "modal", "mesh": {{ "grid": {{ "size": [1, 1], "cells": [24, 24] }} }}, "rest": {{ "scale": {} }},
+          "thickness": 0.001, "density": 1000, "membrane": {{ "law": "stvk", "young_modulus": 1e7, "poisson_ratio": 0.3 }},
+          "modal": {{ "modes": 4, "clamp": {{ "boundary": true }} }} }} }} }})",
+        scale);
+    return build_modal_basis(read_scene(path("drum.json")));
+  };
+  const double stretch = 1 / 0.99, stress = 1e7 / 0.7 * 0.5 * (stretch * stretch - 1);  // second Piola-Kirchhoff
+  // Of the rest density and rest lengths, so that the wave in the stretched sheet has c = stretch sqrt(S/rho).
+  const double expected = std::numbers::pi * std::sqrt(2.0) * stretch * std::sqrt(stress / 1000);
+  EXPECT_NEAR(rate(drum(0.99).eigenvalues[0]) / expected, 1, 0.01);
+  try {
+    drum(1);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("a membrane needs bending or tension"), std::string::npos) << error.what();
+  }
+}
+
 /// A free rod of tetrahedra: bending and torsion lock, but stretching along the rod does not.
 TEST_F(ModalBody, TetrahedraFromAFileHaveSixRigidMotionsAndLongitudinalFrequencies) {
   const TetrahedronMesh box = make_box({1, 0.05, 0.05}, 40, 2, 2);
