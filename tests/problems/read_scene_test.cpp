@@ -243,10 +243,10 @@ TEST_F(ReadScene, OverridesOfNothingAreRefusedByName) {
             " --set times.step=1: /times: not there, so nothing can be set in it; allowed: format, time, bodies, "
             "description, look_for, gravity, "
             "constraints, loads, solver, output");
-  EXPECT_EQ(
-      refused("time.stepp", "1"),
-      " --set time.stepp=1: /time/stepp: unknown key, allowed: integrator, step, steps, spectral_radius, halvings, "
-      "frequencies (did you mean \"step\"?)");
+  EXPECT_EQ(refused("time.stepp", "1"),
+            " --set time.stepp=1: /time/stepp: unknown key, allowed: integrator, step, steps, spectral_radius, beta, "
+            "gamma, halvings, "
+            "frequencies (did you mean \"step\"?)");
   EXPECT_EQ(refused("time.step", "1e999"),
             " --set time.step=1e999: /time/step: found \"1e999\", allowed: a number > 0, in s");
   EXPECT_EQ(refused("gravity.2", "1"),

@@ -212,7 +212,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"/constraints/pins/motion", "{\"keyframes\": [{}]}",
             "/constraints/pins/motion/keyframes/0/time: missing, allowed: a number, in s"},
         Bad{"/time/stepp", "1",
-            "/time/stepp: unknown key, allowed: integrator, step, steps, spectral_radius, halvings, frequencies (did "
+            "/time/stepp: unknown key, allowed: integrator, step, steps, spectral_radius, beta, gamma, halvings, "
+            "frequencies (did "
             "you mean "
             "\"step\"?)"},
         Bad{"/time/steps", "delete", "/time/steps: missing, allowed: an integer >= 1 and <= 10000000"},

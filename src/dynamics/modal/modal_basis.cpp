@@ -20,17 +20,22 @@ Vector mass_times(const Model& model, const Vector& v) {
   return out;
 }
 
-/// Gradient of the elastic energies at the start, zero at pins; and the largest force of a single element.
+/// Gradient of the elastic energies at the start, zero at pins; and what it is small against: the largest force of a
+/// single element, or what a displacement by 1e-4 of the body's size would cost.
 std::pair<Vector, double> elastic_force(const Model& model) {
   std::array<double, max_stencil_width> local, gradient;
   Vector force = Vector::Zero(model.positions.size());
   double largest = 0;
+  const double extent = (model.positions.maxCoeff() - model.positions.minCoeff());
+  std::vector<double> hessian(max_stencil_width * max_stencil_width);
   for (const auto& energy : model.elastic) {
     const Stencils& stencils = energy->stencils();
     for (Index element = 0; element < stencils.count(); ++element) {
       stencils.gather(element, model.positions, local.data());
-      energy->evaluate(element, local.data(), gradient.data(), nullptr, Curvature::exact);
+      energy->evaluate(element, local.data(), gradient.data(), hessian.data(), Curvature::exact);
       for (int i = 0; i < stencils.width(); ++i) {
+        largest =
+            std::max(largest, 1e-4 * extent * std::abs(hessian[static_cast<std::size_t>(i * (stencils.width() + 1))]));
         force[stencils[element][i]] += gradient[i];
         largest = std::max(largest, std::abs(gradient[i]));
       }
@@ -40,7 +45,24 @@ std::pair<Vector, double> elastic_force(const Model& model) {
   return {force, largest};
 }
 
-/// Makes the columns M-orthonormal, in order, also to the first `done` columns of `against`.
+/// About the largest value of the whole spectrum: the largest K_ii over M_ii, 1/s^2.
+double largest_value(const Model& model) {
+  std::array<double, max_stencil_width> local, gradient;
+  std::vector<double> hessian(max_stencil_width * max_stencil_width);
+  Vector diagonal = Vector::Zero(model.positions.size());
+  for (const auto& energy : model.elastic) {
+    const Stencils& stencils = energy->stencils();
+    for (Index element = 0; element < stencils.count(); ++element) {
+      stencils.gather(element, model.positions, local.data());
+      energy->evaluate(element, local.data(), gradient.data(), hessian.data(), Curvature::exact);
+      for (int i = 0; i < stencils.width(); ++i)
+        diagonal[stencils[element][i]] += hessian[static_cast<std::size_t>(i * (stencils.width() + 1))];
+    }
+  }
+  return diagonal.cwiseQuotient(mass_times(model, Vector::Ones(diagonal.size()))).cwiseAbs().maxCoeff();
+}
+
+/// Makes the columns M-orthonormal, in order.
 void orthonormalise(const Model& model, Matrix& columns) {
   for (Index k = 0; k < columns.cols(); ++k) {
     for (int pass = 0; pass < 2; ++pass) {
@@ -252,9 +274,9 @@ ModalBasis modal_basis(const Model& model, const SparseMatrix& curl, int count, 
     basis.eigenvalues.head(basis.rigid).setZero();
   }
   // What costs no energy has only round-off for a value, beside those that do.
-  const double highest = basis.eigenvalues.cwiseAbs().maxCoeff();
+  const double least = std::max(1e-9 * basis.eigenvalues.cwiseAbs().maxCoeff(), 1e-14 * largest_value(model));
   for (int k = basis.rigid; k < count; ++k) {
-    if (basis.eigenvalues[k] > 1e-9 * highest) continue;
+    if (basis.eigenvalues[k] > least) continue;
     throw std::invalid_argument("mode " + std::to_string(k + 1) + " costs no energy (value " +
                                 std::to_string(basis.eigenvalues[k]) +
                                 " 1/s^2): a membrane needs bending or tension, and a clamp that leaves no hinge");

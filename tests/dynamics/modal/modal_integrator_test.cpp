@@ -5,7 +5,7 @@
 #include <Eigen/SVD>
 #include <cmath>
 
-#include "dynamics/modal/small_basis.h"
+#include "tests/dynamics/modal/small_basis.h"
 
 namespace taut {
 namespace {
@@ -23,37 +23,39 @@ std::shared_ptr<ModalBasis> linear_pair() {
   return basis;
 }
 
-/// Forces of the hand that pulls the node to x = 1 in ten steps and keeps it there.
+/// Forces of the hand that pulls the node to x = 0.9 in nine steps and keeps it there. (From rest the velocity of the
+/// average acceleration is twice the hand's after odd steps and none after even ones: an even number leaves no growth.)
 std::vector<double> forces_after_a_jump(const NewmarkRule& rule, int steps) {
   const auto basis = linear_pair();
   ModalIntegrator body(basis, rule, Vector::Constant(2, 0.5), {{0, 0}});
   std::vector<double> forces;
   for (int k = 1; k <= steps; ++k) {
-    body.step(Vector::Zero(2), Vector::Constant(1, std::min(1.0, k * 0.1)));
+    body.step(Vector::Zero(2), Vector::Constant(1, std::min(0.9, k * 0.1)));
     forces.push_back(body.forces()[0]);
   }
   return forces;
 }
 
-double saw_tooth(const std::vector<double>& forces, std::size_t k) {
-  return std::abs(forces[k] - 2 * forces[k - 1] + forces[k - 2]) / 4;
+/// The part that changes its sign from step to step: a fourth difference, in which what is smooth vanishes.
+double saw_tooth(const std::vector<double>& f, std::size_t k) {
+  return std::abs(f[k] - 4 * f[k - 1] + 6 * f[k - 2] - 4 * f[k - 3] + f[k - 4]) / 16;
 }
 
 /// Constrained, the average acceleration has the amplification [[-1, 0], [-4/h, -1]].
 TEST(ModalIntegrator, UnderTheAverageAccelerationMultipliersSawToothAndGrowLinearly) {
   const auto forces = forces_after_a_jump({0.01, 0.25, 0.5}, 2000);
   const double early = saw_tooth(forces, 200), middle = saw_tooth(forces, 1100), late = saw_tooth(forces, 1999);
-  EXPECT_GT(early, 100 * 4.0);  // beside a static force of about 4
+  EXPECT_GT(early, 100 * 3.5);  // beside a static force of about 3.5
   EXPECT_NEAR((late - middle) / 899, (middle - early) / 900, 0.02 * (middle - early) / 900);
   EXPECT_GT(late, early);
-  for (std::size_t k = 1900; k < 1999; ++k) EXPECT_LT((forces[k] - 3.4) * (forces[k + 1] - 3.4), 0) << k;
+  for (std::size_t k = 1900; k < 1999; ++k) EXPECT_LT(forces[k] * forces[k + 1], 0) << k;
 }
 
 TEST(ModalIntegrator, UnderTheDefaultTheyDecayToTheStaticForce) {
-  const auto forces = forces_after_a_jump({0.01, 0.3025, 0.6}, 2000);
+  const auto forces = forces_after_a_jump({0.01, 0.3025, 0.6}, 8000);
   EXPECT_LT(saw_tooth(forces, 200), 1e-6);
-  // 1 = f (1/4 + 1/4/25) in the static end.
-  EXPECT_NEAR(forces.back(), 1 / (1.0 / 4 + 0.25 / 25), 1e-6);
+  // 0.9 = f (1/4 + 1/4/25) in the static end; what is left of the vibration has died by exp(-0.25 t).
+  EXPECT_NEAR(forces.back(), 0.9 / (1.0 / 4 + 0.25 / 25), 1e-6);
 }
 
 TEST(ModalIntegrator, MeetsItsTargetsAndTheEquationOfMotion) {

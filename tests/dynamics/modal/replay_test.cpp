@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "dynamics/modal/modal_integrator.h"
-#include "dynamics/modal/small_basis.h"
 #include "support/random_values.h"
+#include "tests/dynamics/modal/small_basis.h"
 
 namespace taut {
 namespace {

@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "dynamics/modal/modal_energies.h"
-#include "dynamics/modal/small_basis.h"
 #include "dynamics/modal/warped_position.h"
 #include "support/derivative_check.h"
+#include "tests/dynamics/modal/small_basis.h"
 
 namespace taut {
 namespace {
