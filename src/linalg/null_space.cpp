@@ -66,6 +66,8 @@ Matrix dense_basis(const SparseMatrix& rows, const Component& component, std::ve
   qr.setThreshold(1e-10);
   qr.compute(dense);
   const Index rank = qr.rank();
+  if (rank == 0) return Matrix::Identity(n, n);
+  if (rank == n) return Matrix(n, 0);  // Eigen solves no empty systems
   Matrix basis(n, n - rank);
   basis.topRows(rank) = -qr.matrixQR()
                              .topLeftCorner(rank, rank)
