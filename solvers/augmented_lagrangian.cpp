@@ -176,7 +176,7 @@ void AugmentedLagrangian::Run::start(const WarmStart& warm) {
   work.equalities.put(options.warm_multipliers ? equal : Vector(Vector::Zero(equal.size())), work.slacks.size(),
                       result.multipliers);
   // Of the start only the scale of its forces is wanted, and the last step's is as good.
-  if (warm.force_scale > 0 && !work.slacks.empty()) {
+  if (warm.force_scale > 0 && std::isfinite(warm.force_scale) && !work.slacks.empty()) {
     judged.force_scale = warm.force_scale;
   } else {
     judged = residuals(problem, result);

@@ -24,6 +24,11 @@ struct ModesArguments {
 int modes(const ModesArguments& arguments) {
   const Scene scene = read_scene(find_problem(arguments.problem), parse_settings(arguments.settings));
   const ModalBasis basis = build_modal_basis(scene);
+  try {
+    if (!arguments.save.empty()) write_basis(arguments.save, basis);
+  } catch (const FileError& error) {
+    throw UsageError(error.what());
+  }
   fmt::print("{:>5} {:>16} {:>10}\n", "mode", "frequency, Hz", "residual");
   double worst = 0;
   for (Index k = 0; k < basis.modes(); ++k) {
@@ -33,7 +38,6 @@ int modes(const ModesArguments& arguments) {
                k < basis.rigid ? "  rigid motion" : "");
   }
   fmt::print("mesh {}, body {}\n", basis.mesh_hash, basis.body_hash);
-  if (!arguments.save.empty()) write_basis(arguments.save, basis);
   return worst <= scene.solver.tolerance.stationarity ? exit_solved : exit_not_solved;
 }
 

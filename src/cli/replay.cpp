@@ -72,22 +72,34 @@ ReceivedStream read_standard_input() {
   return read_stream(bytes);
 }
 
-ReceivedStream read_source(const ReplayArguments& arguments) {
+ReceivedStream read_source(const std::string& source, double patience) {
   ReceivedStream stream;
-  if (const auto port = udp_port(arguments.source)) {
-    stream = receive(*port, arguments.patience);
-  } else if (arguments.source == "-") {
+  if (const auto port = udp_port(source)) {
+    stream = receive(*port, patience);
+  } else if (source == "-") {
     stream = read_standard_input();
   } else {
     try {
-      stream = read_stream(read_bytes(arguments.source));
+      stream = read_stream(read_bytes(source));
     } catch (const FileError& error) {
       throw UsageError(error.what());
     }
   }
   if (stream.keyframes.empty())
-    throw UsageError(arguments.source + ": no stream of accelerations that can be rebuilt: no keyframe arrived");
+    throw UsageError(source + ": no stream of accelerations that can be rebuilt: no keyframe arrived");
   return stream;
+}
+
+/// What the stream is compared with: --against, or the source before the channel, or nothing.
+std::optional<RebuiltStream> original_of(const ReplayArguments& arguments, const ReceivedStream& source) {
+  if (arguments.original.empty())
+    return arguments.channel.changes() ? std::optional(rebuild(source, Fill::zero)) : std::nullopt;
+  const ReceivedStream original = read_source(arguments.original, arguments.patience);
+  if (original.header.modes != source.header.modes) {
+    throw UsageError(fmt::format("{}: found {} modes, allowed: the {} of {}", arguments.original, original.header.modes,
+                                 source.header.modes, arguments.source));
+  }
+  return rebuild(original, Fill::zero);
 }
 
 void send(const std::vector<StreamPacket>& packets, const std::string& target) {
@@ -123,24 +135,21 @@ void report(const ReceivedStream& stream, const RebuiltStream& rebuilt, const st
 }
 
 int replay(const ReplayArguments& arguments) {
-  const ReceivedStream source = read_source(arguments);
+  const ReceivedStream source = read_source(arguments.source, arguments.patience);
   const std::vector<StreamPacket> packets = sent(source, arguments.channel);
   if (!arguments.send.empty()) {
     send(packets, arguments.send);
     return exit_solved;
   }
-  const bool changed = arguments.channel.loss > 0 || !arguments.channel.drop.empty() || arguments.channel.keyframe > 0;
-  const ReceivedStream stream = changed ? received_stream(packets, source.skipped_bytes) : source;
+  const ReceivedStream stream = arguments.channel.changes() ? received_stream(packets, source.skipped_bytes) : source;
   const RebuiltStream rebuilt = rebuild(stream, fills.at(arguments.fill));
-  std::optional<RebuiltStream> original;
-  if (!arguments.original.empty())
-    original = rebuild(read_stream(read_bytes(arguments.original)), Fill::zero);
-  else if (changed)
-    original = rebuild(source, Fill::zero);
+  const std::optional<RebuiltStream> original = original_of(arguments, source);
   const std::vector<Distortion> distorted = original ? distortions(*original, rebuilt) : std::vector<Distortion>();
   if (!arguments.out.empty()) {
     const fs::path out = arguments.out;
-    fs::create_directories(out);
+    std::error_code error;
+    fs::create_directories(out, error);
+    if (error) throw UsageError(arguments.out + ": cannot be created: " + error.message());
     write_atomically(out / "trajectory.csv", trajectory_csv(rebuilt));
     if (original) {
       write_atomically(out / "distortion.csv", distortion_csv(distorted));

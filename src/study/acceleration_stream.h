@@ -45,6 +45,8 @@ struct Channel {
   std::vector<int> drop;  ///< steps that are lost for certain
   unsigned seed = 1;
   int keyframe = 0;  ///< every how many steps the sender puts the whole state in; 0: only at the start
+
+  bool changes() const { return loss > 0 || !drop.empty() || keyframe > 0; }
 };
 
 /// The packets of a complete stream as they leave the channel, in order. Throws std::invalid_argument for a loss

@@ -124,7 +124,11 @@ bool Run::begin() {
     before_ = from->before;
     stepper_->restore(from->state);
   }
-  if (!options_.accelerations.empty()) accelerations_.emplace(scene_, options_.accelerations);
+  try {
+    if (!options_.accelerations.empty()) accelerations_.emplace(scene_, options_.accelerations);
+  } catch (const FileError& error) {
+    throw RunRefused(error.what());
+  }
   if (!folder_) return true;
   const Stopwatch watch(summary_.seconds.output);
   if (from) {

@@ -76,6 +76,11 @@ TEST_F(ReplayCommand, RefusesWhatItCannotRebuild) {
   expect_refused({"replay", folder("missing")}, "missing");
   expect_refused({"replay", folder("run.acc"), "--loss", "2"}, "--loss");
   expect_refused({"replay", "udp:x"}, "udp:PORT");
+  expect_refused({"replay", folder("run.acc"), "--against", folder("missing")}, "missing");
+  expect_refused({"replay", folder("run.acc"), "--against", folder("none")}, "no keyframe");
+  expect_refused({"replay", folder("run.acc"), "--out", folder("none") + "/x"}, "cannot be created");
+  expect_refused({"modes", path("modal.json").string(), "--save", folder("missing") + "/m"}, "missing");
+  expect_refused({"solve", path("modal.json").string(), "--record-accelerations", folder("missing") + "/x"}, "missing");
   expect_refused({"solve", "hanging_cloth", "--record-accelerations", folder("x.acc")}, "no modal body");
 }
 
