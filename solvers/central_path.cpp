@@ -96,7 +96,8 @@ class CentralPath {
   /// neither is.
   void advance(Vector& x, double last_width) {
     const double before = merit_;
-    double fraction = std::min(1.0, 0.9 * assembly_.largest_step(x, step_));
+    double fraction =
+        std::min(believable_fraction(x, step_, options_.longest_step), 0.9 * assembly_.largest_step(x, step_));
     double best_fraction = fraction, best = std::numeric_limits<double>::infinity();
     bool accepted = false;
     for (int halving = 0; halving < options_.max_halvings && !accepted; ++halving) {

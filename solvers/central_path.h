@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <functional>
+#include <limits>
 
 #include "core/assembly.h"
 #include "core/solver.h"
@@ -19,6 +20,7 @@ struct CentralPathOptions {
   double smallest_width = 1e-9;    ///< final smoothing width, in the constraint's scale
   int max_iterations = 50;         ///< linear solves before the augmented Lagrangian takes over
   int max_halvings = 6;
+  double longest_step = std::numeric_limits<double>::infinity();  ///< as in NewtonOptions
   void validate() const;
 };
 

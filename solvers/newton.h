@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 
 #include "core/assembly.h"
 #include "core/solver.h"
@@ -14,6 +15,9 @@ struct NewtonOptions {
   int max_halvings = 40;              ///< of the step in one line search
   double sufficient_decrease = 1e-4;  ///< Armijo's constant
   double guard = 0.9;                 ///< fraction of the largest step that guarded elements allow
+  /// No entry of a step exceeds this times max(1, |x|_inf): where the matrix is nearly singular, Newton's step is not to
+  /// be believed. Infinity for scenes, whose masses bound it.
+  double longest_step = std::numeric_limits<double>::infinity();
   void validate() const;
 };
 
@@ -102,6 +106,9 @@ class Newton {
   int wait_ = 0;  // iterations before the exact Hessian is tried again
   int patience_ = 1;
 };
+
+/// The fraction of a step that NewtonOptions::longest_step leaves, at most 1.
+double believable_fraction(const Vector& x, const Vector& step, double longest_step);
 
 /// The largest Euclidean norm over nodes of `node_size` consecutive entries.
 double nodal_max_norm(const Vector& force, int node_size);
