@@ -1,9 +1,13 @@
 #include "problems/nl_model.h"
 
 #include <cmath>
+#include <csetjmp>
+#include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "files/file_error.h"
 #include "problems/scene.h"
@@ -41,21 +45,32 @@ namespace {
   throw InputError(file.string() + ": " + what);
 }
 
-/// The library ends the process on some errors; it jumps back here instead, past no destructor of ours.
-bool read_model(ASL* asl, const std::string& stub) {
-  Jmp_buf back;
-  asl->i.err_jmp1_ = &back;
-  if (setjmp(back.jb)) {
-    asl->i.err_jmp1_ = nullptr;
-    return false;
+/// Where AMPL's library goes back to instead of ending the process, past no destructor of ours.
+thread_local std::jmp_buf* way_back = nullptr;
+
+/// False, with what the library says about it in `reason`, where it cannot read the file.
+bool read_model(ASL* asl, const std::string& stub, std::string& reason) {
+  std::jmp_buf back;
+  char* said = nullptr;
+  std::size_t length = 0;
+  FILE* const console = std::exchange(Stderr, open_memstream(&said, &length));
+  volatile bool good = false;
+  way_back = &back;
+  if (setjmp(back) == 0) {
+    FILE* file = jac0dim(const_cast<char*>(stub.c_str()), static_cast<ftnlen>(stub.size()));
+    want_xpi0 = 1;
+    asl->i.nlvog = n_var;
+    good = file && pfgh_read(file, ASL_return_read_err) == ASL_readerr_none;
   }
-  FILE* file = jac0dim(const_cast<char*>(stub.c_str()), static_cast<ftnlen>(stub.size()));
-  if (!file) return false;
-  want_xpi0 = 1;
-  asl->i.nlvog = n_var;
-  const int error = pfgh_read(file, ASL_return_read_err);
-  asl->i.err_jmp1_ = nullptr;
-  return error == ASL_readerr_none;
+  way_back = nullptr;
+  std::fclose(std::exchange(Stderr, console));
+  reason.assign(said, length);
+  std::free(said);
+  for (char& c : reason) {
+    if (c == '\n') c = ' ';
+  }
+  while (reason.ends_with(' ')) reason.pop_back();
+  return good;
 }
 
 /// What a header announces that this reader or these solvers cannot serve; empty where there is nothing.
@@ -76,6 +91,12 @@ double bound(double value) {
 
 }  // namespace
 
+/// AMPL's library calls this where it would end the process, and finds ours first.
+extern "C" void mainexit_ASL(int code) {
+  if (way_back) std::longjmp(*way_back, 1);
+  std::_Exit(code);
+}
+
 NlModel::NlModel(const std::filesystem::path& given) : data_(std::make_unique<Data>()) {
   Data& d = *data_;
   d.stub = given;
@@ -91,9 +112,9 @@ NlModel::NlModel(const std::filesystem::path& given) : data_(std::make_unique<Da
   d.asl = ASL_alloc(ASL_read_pfgh);
   ASL* asl = d.asl;
   return_nofile = 1;
-  if (!read_model(asl, d.stub.string())) {
+  if (std::string said; !read_model(asl, d.stub.string(), said)) {
     const std::string reason = asl->i.n_var_ > 0 ? unsupported(asl) : "";
-    refuse(path, reason.empty() ? "is damaged: AMPL's solver library cannot read it" : "found " + reason);
+    refuse(path, reason.empty() ? "cannot be read by AMPL's solver library (" + said + ")" : "found " + reason);
   }
   if (const std::string reason = unsupported(asl); !reason.empty()) refuse(path, "found " + reason);
 

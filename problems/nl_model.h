@@ -30,11 +30,11 @@ class NlModel {
   int rows() const;
   bool has_objective() const;
   bool maximise() const;
-  const Vector& lower() const;      ///< of the variables, -infinity where there is no bound
+  const Vector& lower() const;  ///< of the variables, -infinity where there is no bound
   const Vector& upper() const;
   const Vector& row_lower() const;  ///< of the rows
   const Vector& row_upper() const;
-  const Vector& start() const;      ///< zero where the model has none
+  const Vector& start() const;  ///< zero where the model has none
   std::string variable_name(int variable) const;
   std::string row_name(int row) const;
 

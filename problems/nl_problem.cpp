@@ -124,8 +124,8 @@ Vector local(const NlModel& model, int function, const Vector& x) {
 void check_width(const NlModel& model, int function, const std::string& what) {
   const std::size_t width = model.variables_of(function).size();
   if (width > max_stencil_width)
-    throw InputError(model.name() + ".nl: found " + std::to_string(width) + " variables in " + what + ", allowed: " +
-                     std::to_string(max_stencil_width));
+    throw InputError(model.name() + ".nl: found " + std::to_string(width) + " variables in " + what +
+                     ", allowed: " + std::to_string(max_stencil_width));
 }
 
 }  // namespace
@@ -150,13 +150,13 @@ NlProblem::NlProblem(const NlModel& model) : model_(model) {
   for (int row = 0; row < model.rows(); ++row) {
     check_width(model, row, "row " + model.row_name(row));
     const bool bounded = std::isfinite(model.row_lower()[row]) || std::isfinite(model.row_upper()[row]);
-    constraint_of_row_.push_back(bounded && !model.variables_of(row).empty() ? static_cast<int>(constraints_.size()) : -1);
+    constraint_of_row_.push_back(bounded && !model.variables_of(row).empty() ? static_cast<int>(constraints_.size())
+                                                                             : -1);
     Vector x = local(model, row, problem_.initial_guess), gradient(x.size());
     model.evaluate(row, x.data(), gradient.data(), nullptr);
     const double largest = x.size() > 0 ? gradient.lpNorm<Eigen::Infinity>() : 0.0;
     row_scale_.push_back(largest > largest_derivative && std::isfinite(largest) ? largest_derivative / largest : 1.0);
-    if (constraint_of_row_.back() >= 0)
-      constraints_.push_back(std::make_unique<NlRow>(model, row, row_scale_.back()));
+    if (constraint_of_row_.back() >= 0) constraints_.push_back(std::make_unique<NlRow>(model, row, row_scale_.back()));
   }
   if (model.has_objective() && !model.variables_of(NlModel::objective).empty()) {
     check_width(model, NlModel::objective, "the objective");
@@ -174,8 +174,14 @@ NlProblem::NlProblem(const NlModel& model) : model_(model) {
 NlProblem::~NlProblem() = default;
 
 double NlProblem::objective(const Vector& x) const {
-  return model_.has_objective() ? model_.evaluate(NlModel::objective, local(model_, NlModel::objective, x).data(), nullptr, nullptr)
-                                : 0.0;
+  return model_.has_objective()
+             ? model_.evaluate(NlModel::objective, local(model_, NlModel::objective, x).data(), nullptr, nullptr)
+             : 0.0;
+}
+
+std::string NlProblem::name_of(const std::string& node) const {
+  const std::string prefix = "vertex ";
+  return node.starts_with(prefix) ? "variable " + model_.variable_name(std::stoi(node.substr(prefix.size()))) : node;
 }
 
 Vector NlProblem::dual(const Result& result) const {

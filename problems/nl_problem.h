@@ -22,6 +22,8 @@ class NlProblem {
   const Problem& problem() const { return problem_; }
   /// The model's objective, sign and constant included.
   double objective(const Vector& x) const;
+  /// The variable that residuals call "vertex i".
+  std::string name_of(const std::string& node) const;
   /// The rate of the objective in each row's bound, as AMPL reports it.
   Vector dual(const Result& result) const;
 

@@ -110,6 +110,7 @@ struct AugmentedLagrangian::Run {
   void start(const WarmStart& warm);
   double automatic_penalty(const Constraint& constraint) const;
   Status inner(NewtonState& state);
+  bool diverges(const Vector& x) const;
   void update(const NewtonState& state);
   bool update_penalties();
   bool closest_compromise(NewtonState& state);
@@ -183,6 +184,11 @@ void AugmentedLagrangian::Run::start(const WarmStart& warm) {
   }
 }
 
+/// True where x is so far away that the subproblem has no minimum to be found.
+bool AugmentedLagrangian::Run::diverges(const Vector& x) const {
+  return x.lpNorm<Eigen::Infinity>() > 1e10 * std::max(1.0, problem.initial_guess.lpNorm<Eigen::Infinity>());
+}
+
 /// Minimises over x until its residual is small against the force that the multiplier update would change.
 Status AugmentedLagrangian::Run::inner(NewtonState& state) {
   double smallest = 0.5 * options.tolerances.stationarity * judged.force_scale;
@@ -198,7 +204,7 @@ Status AugmentedLagrangian::Run::inner(NewtonState& state) {
           judged = residuals(problem, result);
           smallest = 0.5 * options.tolerances.stationarity * judged.force_scale;
         }
-        if (now.nodal_norm <= smallest) return true;
+        if (now.nodal_norm <= smallest || diverges(now.x)) return true;
         if (result.counts.linear_solves >= options.max_newton) return true;
         scratch.setZero(problem.size());
         for (const EliminatedSlack& slack : work.slacks) slack.add_update_force(now.x, scratch);
@@ -333,7 +339,7 @@ void AugmentedLagrangian::Run::loop() {
   Residuals best_judged = judged;
   best_judged.finite = false;
   double first_violation = -1;
-  int stalls = 0, without_progress = 0;
+  int stalls = 0, without_progress = 0, failures = 0;
 
   const auto finish = [&](Status status, std::string message) {
     if (status != Status::solved && status != Status::infeasible && merit(best_judged) < merit(judged)) {
@@ -347,8 +353,25 @@ void AugmentedLagrangian::Run::loop() {
 
   while (true) {
     const Status inner_status = inner(state);
-    if (inner_status == Status::not_finite)
-      return finish(inner_status, "a value, a force or a Newton step is not finite");
+    if (inner_status == Status::not_finite || diverges(state.x)) {
+      if (++failures <= 3 && options.fixed_penalty == 0 && !work.slacks.empty()) {
+        // A subproblem without a minimum says nothing about the multipliers; a larger penalty may give it one.
+        for (std::size_t k = 0; k < work.slacks.size(); ++k) {
+          start_penalty[k] *= 1e3;
+          work.slacks[k].set_penalty(start_penalty[k]);
+        }
+        state.x = result.x;
+        state.multipliers = work.equalities.stacked(result.multipliers, work.slacks.size());
+        continue;
+      }
+      if (inner_status == Status::not_finite)
+        return finish(inner_status, "a value, a force or a Newton step is not finite");
+      update(state);
+      const double distance = std::max(1.0, state.x.lpNorm<Eigen::Infinity>());
+      if (judged.feasibility <= options.tolerances.feasibility * distance)
+        return finish(Status::unbounded, "the objective falls without end while the constraints hold");
+      return finish(Status::stalled, "the iterates leave every bound without meeting the constraints");
+    }
     update(state);
     if (merit(judged) < merit(best_judged)) {
       best.x = result.x;

@@ -100,7 +100,7 @@ bool Newton::direction(const NewtonState& state, Counts& counts, Timings& timing
     for (int attempt = 0; !positive && attempt < 12; ++attempt) {
       // Relative to the stiffest entry: 1e-10, 1e-9, ... Where all are zero, the gradient is followed.
       const double stiffest = assembly_.matrix().coeffs().abs().maxCoeff();
-      shift = shift > 0 ? 10 * shift : stiffest > 0 ? 1e-10 * stiffest : 1.0;
+      shift = shift > 0 ? 10 * shift : 1e-10 * (stiffest > 0 ? stiffest : 1.0);
       if (!std::isfinite(shift)) return false;
       positive = factorize(shift);
     }

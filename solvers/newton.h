@@ -15,8 +15,8 @@ struct NewtonOptions {
   int max_halvings = 40;              ///< of the step in one line search
   double sufficient_decrease = 1e-4;  ///< Armijo's constant
   double guard = 0.9;                 ///< fraction of the largest step that guarded elements allow
-  /// No entry of a step exceeds this times max(1, |x|_inf): where the matrix is nearly singular, Newton's step is not to
-  /// be believed. Infinity for scenes, whose masses bound it.
+  /// No entry of a step exceeds this times max(1, |x|_inf): where the matrix is nearly singular, Newton's step is not
+  /// to be believed. Infinity for scenes, whose masses bound it.
   double longest_step = std::numeric_limits<double>::infinity();
   void validate() const;
 };

@@ -10,6 +10,7 @@
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/model.h"
 #include "cli/progress.h"
 #include "cli/stop_signals.h"
 #include "problems/read_scene.h"
@@ -44,11 +45,21 @@ int exit_code(Status status) {
   return status == Status::interrupted ? exit_interrupted : exit_not_solved;
 }
 
+/// A model has no steps to resume, no frames and no modes.
+int solve_model(const SolveArguments& arguments) {
+  if (arguments.resume || !arguments.accelerations.empty() || !arguments.format.empty())
+    throw UsageError("--resume, --format and --record-accelerations are for scenes; " + arguments.problem +
+                     " is an optimisation model");
+  return solve_model_file({arguments.problem, arguments.out, parse_settings(arguments.settings), arguments.max_seconds,
+                           arguments.json, arguments.quiet});
+}
+
 int solve(const SolveArguments& arguments) {
   if (arguments.resume && arguments.out.empty())
     throw UsageError("--resume needs --out DIR, the directory of the run to go on with");
   if (arguments.resume && !arguments.accelerations.empty())
     throw UsageError("--record-accelerations needs a run from its beginning, without --resume");
+  if (std::filesystem::path(arguments.problem).extension() == ".nl") return solve_model(arguments);
   const std::atomic<bool>& stop_requested = stop_on_signals();
   const Scene scene = read_scene(find_problem(arguments.problem), overrides_of(arguments));
 
@@ -102,7 +113,9 @@ constexpr const char* footer =
     "  taut solve hanging_cloth --out out/cloth\n"
     "  taut solve problem.json --out out/short --set time.steps=10 --set constraints.limit.max=1.05\n"
     "  taut solve problem.json --out out/long --max-seconds 3600     and later, the same with --resume\n"
-    "  taut solve problem.json --json | jq .status";
+    "  taut solve problem.json --json | jq .status\n"
+    "  taut solve model.nl --set solver.tolerance.feasibility=1e-9 --out out/model\n"
+    "                                            an optimisation model of AMPL, Pyomo or JuMP";
 
 }  // namespace
 
@@ -110,7 +123,10 @@ void add_solve(CLI::App& program, int& code) {
   CLI::App* command = program.add_subcommand("solve", "Solve a problem and judge every step");
   command->footer(footer);
   const auto arguments = std::make_shared<SolveArguments>();
-  command->add_option("PROBLEM", arguments->problem, "A problem file, or the name of one in the catalogue")->required();
+  command
+      ->add_option("PROBLEM", arguments->problem,
+                   "A problem file, the name of one in the catalogue, or an AMPL model (.nl)")
+      ->required();
   command->add_option("--out", arguments->out, "Write results to this directory; without it nothing is written")
       ->type_name("DIR");
   command
