@@ -1,7 +1,11 @@
 #include "study/solve_model.h"
 
+#include <algorithm>
+#include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
+#include <random>
+#include <utility>
 
 #include "core/stopwatch.h"
 #include "files/atomic_file.h"
@@ -16,11 +20,58 @@ namespace {
 
 constexpr int worst_elements_kept = 10;
 
-/// Of a model without any variable that is free and bounded by something, the solvers know nothing.
-Result solve(const Problem& problem, const Scene& settings, const Budget& budget, std::string& solver_name) {
+/// A point between the model's start and a random one within the bounds, or around the start where there are none. The
+/// first few stay near.
+Vector another_start(const NlModel& model, const Vector& start, int number, std::mt19937& random) {
+  const auto uniform = [&random] { return static_cast<double>(random()) / static_cast<double>(std::mt19937::max()); };
+  const double distance = number <= 3 ? 0.3 : 1;
+  Vector x = start;
+  for (Index i = 0; i < x.size(); ++i) {
+    const double lower = model.lower()[i], upper = model.upper()[i];
+    const double reach = std::max(1.0, std::abs(start[i]));
+    const double low = std::isfinite(lower) && std::isfinite(upper) ? lower : std::max(lower, start[i] - reach);
+    const double high = std::isfinite(lower) && std::isfinite(upper) ? upper : std::min(upper, start[i] + reach);
+    x[i] += distance * (low + (high - low) * uniform() - start[i]);
+  }
+  return x;
+}
+
+/// True where a model's result is worth more than another's: solved before infeasible before all else, then by
+/// objective, or by violation.
+bool better(const Problem& problem, const Result& result, const Result& than) {
+  const auto rank = [](const Result& r) {
+    return r.status == Status::solved ? 2 : r.status == Status::infeasible ? 1 : 0;
+  };
+  if (rank(result) != rank(than)) return rank(result) > rank(than);
+  if (rank(result) == 0) return false;
+  const auto value = [&](const Result& r) {
+    return rank(r) == 2 ? objective(problem, r.x) : residuals(problem, r).feasibility;
+  };
+  const double old = value(than);
+  return value(result) < old - 1e-6 * std::max(1.0, std::abs(old));
+}
+
+/// The best result from the model's start and, so that a nonconvex model has more than one chance, others.
+Result solve(const NlModel& model, const Problem& posed, const Scene& settings, const Budget& budget,
+             std::string& solver_name) {
   const std::unique_ptr<Solver> solver = build_solver(settings, 1);
   solver_name = solver->name();
-  return solver->solve(problem, {}, budget);
+  Result best = solver->solve(posed, {}, budget);
+  Counts counts = best.counts;
+  Timings timings = best.timings;
+  Problem problem = posed;
+  std::mt19937 random(1);
+  for (int number = 1; number < settings.solver.starts; ++number) {
+    if (best.status == Status::unbounded || budget.interrupted() || budget.out_of_time()) break;
+    problem.initial_guess = another_start(model, posed.initial_guess, number, random);
+    Result result = solver->solve(problem, {}, budget);
+    counts += result.counts;
+    timings += result.timings;
+    if (better(problem, result, best)) best = std::move(result);
+  }
+  best.counts = counts;
+  best.timings = timings;
+  return best;
 }
 
 }  // namespace
@@ -33,7 +84,7 @@ ModelSolution solve_model(const NlModel& model, const Scene& settings, const Bud
     const Stopwatch watch(summary.seconds.total);
     const NlProblem posed(model);
     const Problem& problem = posed.problem();
-    Result result = solve(problem, settings, budget, summary.solver);
+    Result result = solve(model, problem, settings, budget, summary.solver);
     StepRecord record;
     record.step = 1;
     {
