@@ -36,18 +36,16 @@ Vector another_start(const NlModel& model, const Vector& start, int number, std:
   return x;
 }
 
-/// True where a model's result is worth more than another's: solved before infeasible before all else, then by
-/// objective, or by violation.
+/// True where a model's result is worth more than another's: solved before unsolved, then by objective; unsolved ones
+/// by violation, so that nothing is called infeasible while a point that violates less is known.
 bool better(const Problem& problem, const Result& result, const Result& than) {
-  const auto rank = [](const Result& r) {
-    return r.status == Status::solved ? 2 : r.status == Status::infeasible ? 1 : 0;
-  };
-  if (rank(result) != rank(than)) return rank(result) > rank(than);
-  if (rank(result) == 0) return false;
+  const bool solved = result.status == Status::solved;
+  if (solved != (than.status == Status::solved)) return solved;
   const auto value = [&](const Result& r) {
-    return rank(r) == 2 ? objective(problem, r.x) : residuals(problem, r).feasibility;
+    return solved ? objective(problem, r.x) : residuals(problem, r).feasibility;
   };
   const double old = value(than);
+  if (!std::isfinite(old)) return std::isfinite(value(result));
   return value(result) < old - 1e-6 * std::max(1.0, std::abs(old));
 }
 
