@@ -287,9 +287,9 @@ bool AugmentedLagrangian::Run::penalise(double growth, double tolerance, NewtonS
 /// Minimises the violation from state.x, with the energies as a weak tie-breaker; true where that leaves it violated
 /// and stationary: the residuals are then those of the compromise, in `judged`.
 ///
-/// A penalty finite as it is, the energies violate feasible constraints, too, by lambda / mu. So a second one, a hundred
-/// times as large, has to leave the violation c as it is. Forces balance at both, mu J^T c = -grad f, and grad f is
-/// bounded, so that |J^T c| has fallen to a hundredth while |c| has not.
+/// A penalty finite as it is, the energies violate feasible constraints, too, by lambda / mu. So a second one, a
+/// hundred times as large, has to leave the violation c as it is. Forces balance at both, mu J^T c = -grad f, and grad
+/// f is bounded, so that |J^T c| has fallen to a hundredth while |c| has not.
 bool AugmentedLagrangian::Run::closest_compromise(NewtonState& state) {
   const auto violation = [&] {
     result.x = state.x;
@@ -450,7 +450,8 @@ Result AugmentedLagrangian::solve(const Problem& problem, const WarmStart& warm,
     run.loop();
     result = std::move(run.result);
     if (analysed) ++result.counts.symbolic_analyses;
-    if (pivoted == 0 && workspace_->system->pivoted() > 0) ++result.counts.symbolic_analyses;
+    result.counts.pivoted_factorizations = workspace_->system->pivoted() - pivoted;
+    if (pivoted == 0 && result.counts.pivoted_factorizations > 0) ++result.counts.symbolic_analyses;
     result.force_scale = run.judged.force_scale;
   }
   result.timings.total = total;
