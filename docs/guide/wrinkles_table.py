@@ -9,13 +9,13 @@ that are there are read, not repeated), prints the table and writes docs/images/
 import json
 import math
 import os
-import re
 import resource
 import subprocess
 import sys
 from pathlib import Path
 
 COARSE = 8  # cells of the shell, along and across
+STEPS = 15
 RUNS = {"2": (8, 1), "4": (8, 2), "8": (8, 3), "16": (8, 4), "full": (64, 0)}  # cells of the shell, refinements
 IMAGES = Path(__file__).resolve().parent.parent / "images"
 
@@ -24,7 +24,8 @@ def solve(taut, folder, cells, levels):
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     subprocess.run([taut, "solve", "quilt", "--out", folder, "--format", "obj", "--threads", "1", "--quiet",
                     "--set", f"bodies.quilt.mesh.grid.cells=[{cells},{cells}]",
-                    "--set", f"bodies.quilt.cover.mesh.refine={levels}", "--set", "output.pictures=0"])
+                    "--set", f"bodies.quilt.cover.mesh.refine={levels}", "--set", f"time.steps={STEPS}",
+                    "--set", "output.pictures=0"])
     (folder / "user_seconds").write_text(str(resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before))
 
 
@@ -35,13 +36,11 @@ def vertices(frame, count):
 
 
 def cover(folder, cells):
-    """The cover in the last frame, a matrix of places on the grid at rest for each of x, y and z, and its step."""
-    frames = sorted((folder / "frames").glob("*.obj"))
-    rest, end = (vertices(frame, (cells + 1) ** 2) for frame in (frames[0], frames[-1]))
+    """The cover after STEPS steps: for each of x, y and z a matrix of places on the grid at rest."""
+    rest, end = (vertices(folder / f"frames/quilt_{step:05}.obj", (cells + 1) ** 2) for step in (0, STEPS))
     at = {(round(r[0] * cells), round(r[1] * cells)): p for r, p in zip(rest, end)}
     places = range(cells + 1)
-    grid = [[[at[i, j][axis] for j in places] for i in places] for axis in range(3)]
-    return grid, int(re.search(r"(\d+)\.obj", frames[-1].name).group(1))
+    return [[[at[i, j][axis] for j in places] for i in places] for axis in range(3)]
 
 
 def product(a, b):
@@ -131,23 +130,24 @@ def main():
     covers = {}
     for name, (cells, levels) in RUNS.items():
         run = folder / name
-        if not (run / "summary.json").exists():
+        if not (run / "steps.jsonl").exists():
             solve(taut, run, cells, levels)
         covers[name] = cover(run, cells << levels)
-    reference, reference_step = covers["full"]
     print("| ratio | unknowns | steps solved | Newton systems | user s | RMS distance, mm | seen by the shell, mm "
           "| wrinkles, mm | wavelength, mm |")
     print("|---|---|---|---|---|---|---|---|---|")
     for name, (cells, levels) in RUNS.items():
-        grid, step = covers[name]
-        summary = json.loads((folder / name / "summary.json").read_text())
+        grid = covers[name]
+        lines = (folder / name / "steps.jsonl").read_text().splitlines()[:STEPS]
+        steps = [json.loads(line) for line in lines]
+        solved_steps = sum(step["status"] == "solved" for step in steps)
+        systems = sum(step["counts"]["linear_solves"] for step in steps)
         unknowns = 3 * (3 * (cells + 1) ** 2 + ((cells << levels) + 1) ** 2)
         seconds = float((folder / name / "user_seconds").read_text())
         height, length = wrinkles(grid)
-        apart = ["", ""]
-        if name != "full" and step == reference_step:
-            apart = [f"{1e3 * distance(*pair):.2f}" for pair in ((grid, reference), (smooth(grid), smooth(reference)))]
-        print(f"| {name} | {unknowns} | {summary['steps']['solved']} | {summary['counts']['linear_solves']} "
+        pairs = (grid, covers["full"]), (smooth(grid), smooth(covers["full"]))
+        apart = ["" if name == "full" else f"{1e3 * distance(*pair):.2f}" for pair in pairs]
+        print(f"| {name} | {unknowns} | {solved_steps} | {systems} "
               f"| {seconds:.1f} | {apart[0]} | {apart[1]} | {1e3 * height:.2f} | {1e3 * length:.0f} |")
         picture(name, grid)
 
