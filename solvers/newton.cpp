@@ -70,6 +70,19 @@ void Newton::evaluate(NewtonState& state, Counts& counts, Timings& timings) {
   state.nodal_norm = nodal_max_norm(state.gradient, node_size_);
 }
 
+/// The exact Hessian that the assembly holds, shifted as little as makes it positive definite; false where the shift
+/// would be larger than its diagonal. The last shift, a third of it, is tried first [Waechter and Biegler 2006, 3.1].
+bool Newton::factorize_shifted(const std::function<bool(double)>& factorize) {
+  const double unit = assembly_.matrix().diagonal().cwiseAbs().mean();
+  double shift = shift_ > 1e-5 * unit ? shift_ / 3 : 0;
+  for (shift_ = 0; shift <= unit; shift = std::max(4 * shift, 1e-4 * unit)) {
+    if (!factorize(shift)) continue;
+    shift_ = shift;
+    return true;
+  }
+  return false;
+}
+
 /// Solves H step = -gradient with the best Hessian that is positive definite; false where none is found.
 bool Newton::direction(const NewtonState& state, Counts& counts, Timings& timings) {
   const auto factorize = [&](double shift) {
@@ -85,7 +98,7 @@ bool Newton::direction(const NewtonState& state, Counts& counts, Timings& timing
   bool positive = false;
   if (try_exact) {
     assemble(Curvature::exact);
-    positive = factorize(0);
+    positive = equalities_.count() > 0 ? factorize_shifted(factorize) : factorize(0);
     curvature_ = positive ? Curvature::exact : Curvature::positive_semidefinite;
     if (!positive) {
       wait_ = patience_;

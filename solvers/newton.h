@@ -48,6 +48,8 @@ class NewtonSystem {
     std::size_t bytes = 0;
   };
   virtual Size size() const { return {}; }
+  /// How many factorisations so far needed pivoting.
+  virtual Index pivoted() const { return 0; }
 };
 
 /// Fixed variables substituted by the assembly itself, CHOLMOD in the order of its matrix; no equalities.
@@ -69,9 +71,10 @@ class SubstitutedSystem final : public NewtonSystem {
 
 /// Semismooth Newton with an Armijo line search on a sum of energies. The exact Hessian is tried first; where it is not
 /// positive definite or its step fails, the positive semidefinite one serves for some iterations. A shift is added
-/// where even that is singular (slack static membranes). Where there are linear equalities, positions and their
-/// multipliers move together, and while they are violated the search is on value + rho |A x - b|_1 with rho above every
-/// multiplier [Nocedal and Wright 2006, 18.3].
+/// where even that is singular (slack static membranes). With linear equalities the exact one is shifted instead: their
+/// covers buckle, and steps with the semidefinite Hessian, too stiff in just that direction, are short. Where there are
+/// linear equalities, positions and their multipliers move together, and while they are violated the search is on value
+/// + rho |A x - b|_1 with rho above every multiplier [Nocedal and Wright 2006, 18.3].
 class Newton {
  public:
   /// `fixed` are the variables that stay; all is borrowed.
@@ -88,6 +91,7 @@ class Newton {
 
  private:
   void evaluate(NewtonState& state, Counts& counts, Timings& timings);
+  bool factorize_shifted(const std::function<bool(double)>& factorize);
   bool direction(const NewtonState& state, Counts& counts, Timings& timings);
   bool line_search(NewtonState& state, Counts& counts, Timings& timings);
 
@@ -100,6 +104,7 @@ class Newton {
   int node_size_;
   NewtonOptions options_;
   double weight_ = 0;  // rho
+  double shift_ = 0;   // of the last exact Hessian, with equalities
   Vector step_, multiplier_step_;
   NewtonState trial_;
   Curvature curvature_ = Curvature::positive_semidefinite;
