@@ -202,7 +202,7 @@ StepRecord Run::judge(const Problem& problem, const Result& result) {
   name_for_people(record.residuals, problem, *model_);
   record.step = stepper_->state().step + 1;
   record.time = stepper_->time() + stepper_->options().step;
-  record.status = result.status;
+  record.status = record.claimed = result.status;
   record.message = result.message;
   record.counts = result.counts;
   record.seconds = result.timings;
