@@ -71,7 +71,7 @@ class ChartMaker {
                 .version = options.version};
   }
 
-  Chart go();
+  ChartData go();
 
  private:
   void plan();
@@ -99,7 +99,7 @@ class ChartMaker {
   ChartProcess process_;
   std::vector<ChartPlan> plans_;
   std::vector<std::set<std::string>> names_;  // by problem
-  Chart chart_;
+  ChartData chart_;
 };
 
 std::string point_name(const ChartPoint& point) {
@@ -287,7 +287,7 @@ void ChartMaker::run_problem(const ChartPlan& plan, ProblemChart& problem) {
   follow(plan, problem);
 }
 
-Chart ChartMaker::go() {
+ChartData ChartMaker::go() {
   check_folder(options_.folder);
   plan();
   chart_.interrupted = true;  // until the end is reached
@@ -308,7 +308,7 @@ Chart ChartMaker::go() {
 
 }  // namespace
 
-Chart chart(const ChartOptions& options) {
+ChartData chart(const ChartOptions& options) {
   check(options);
   return ChartMaker(options).go();
 }

@@ -36,6 +36,6 @@ struct ChartOptions {
 ///
 /// Throws InputError for problems and choices that do not fit, RunRefused for a folder that is neither empty nor a
 /// chart's, FileError for files that cannot be written, std::invalid_argument for options that make no sense.
-Chart chart(const ChartOptions& options);
+ChartData chart(const ChartOptions& options);
 
 }  // namespace taut

@@ -79,7 +79,7 @@ Json problem_json(const ProblemChart& p) {
   return json;
 }
 
-Json profile_json(const Chart& chart, const std::vector<Profile>& profiles) {
+Json profile_json(const ChartData& chart, const std::vector<Profile>& profiles) {
   Json json = Json::object();
   for (std::size_t k = 0; k < profiles.size(); ++k)
     json[chart.solvers[k]] = {{"x", profiles[k].x}, {"share", profiles[k].share}};
@@ -88,7 +88,7 @@ Json profile_json(const Chart& chart, const std::vector<Profile>& profiles) {
 
 }  // namespace
 
-std::string chart_text(const Chart& chart) {
+std::string chart_text(const ChartData& chart) {
   Json json;
   json["format"] = format_version;
   json["version"] = chart.version;

@@ -7,6 +7,6 @@
 namespace taut {
 
 /// chart.json: everything. NaNs and infinities become null.
-std::string chart_text(const Chart& chart);
+std::string chart_text(const ChartData& chart);
 
 }  // namespace taut

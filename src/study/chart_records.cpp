@@ -12,7 +12,7 @@ namespace {
 
 /// A row per problem and value, a column per solver; infinity where the run is not correct.
 template <class Cost>
-Matrix costs_of(const Chart& chart, const Cost& cost) {
+Matrix costs_of(const ChartData& chart, const Cost& cost) {
   const auto solvers = static_cast<Index>(chart.solvers.size());
   std::vector<Vector> rows;
   for (const ProblemChart& problem : chart.problems) {
@@ -79,7 +79,7 @@ std::optional<double> order_of(const std::vector<ChartPoint>& points, const std:
   return observed_order(sizes, errors);
 }
 
-std::vector<SolverScore> scores_of(const Chart& chart) {
+std::vector<SolverScore> scores_of(const ChartData& chart) {
   std::vector<SolverScore> scores;
   for (const std::string& solver : chart.solvers) {
     SolverScore& score = scores.emplace_back();
@@ -101,7 +101,7 @@ std::vector<SolverScore> scores_of(const Chart& chart) {
   return scores;
 }
 
-ChartProfiles profiles_of(const Chart& chart) {
+ChartProfiles profiles_of(const ChartData& chart) {
   // A clock or a count of zero would have no logarithm.
   const Matrix seconds =
       costs_of(chart, [](const ChartPoint& point) { return std::max(point.solver_seconds, 1e-9); });

@@ -75,7 +75,7 @@ struct ProblemChart {
   std::vector<ChartHistory> histories;
 };
 
-struct Chart {
+struct ChartData {
   KnobChoice knob;
   std::vector<std::string> solvers;
   std::vector<ProblemChart> problems;
@@ -107,13 +107,13 @@ struct SolverScore {
 };
 /// Seconds that are added before the mean is taken.
 inline constexpr double mean_shift = 1;
-std::vector<SolverScore> scores_of(const Chart& chart);
+std::vector<SolverScore> scores_of(const ChartData& chart);
 
 struct ChartProfiles {
   std::vector<Profile> performance;  ///< by solver; cost: the solver's seconds
   std::vector<Profile> data;         ///< by solver; cost: linear solves a step
 };
 /// Of the correct runs, with a problem at one value of the knob as an instance.
-ChartProfiles profiles_of(const Chart& chart);
+ChartProfiles profiles_of(const ChartData& chart);
 
 }  // namespace taut
