@@ -101,8 +101,8 @@ struct AugmentedLagrangian::Run {
   std::vector<double> last_violation;
   Vector scratch;
 
-  Run(const AugmentedLagrangianOptions& o, const Problem& p, const Budget& b, const std::function<void(const Iterate&)>& f,
-      Workspace& w)
+  Run(const AugmentedLagrangianOptions& o, const Problem& p, const Budget& b,
+      const std::function<void(const Iterate&)>& f, Workspace& w)
       : options(o),
         problem(p),
         budget(b),

@@ -142,7 +142,7 @@ class Callbacks final : public ::Ipopt::TNLP {
  private:
   /// Shows the observer the current point, unless that belongs to the restoration phase's own problem.
   void show(Int iteration, const ::Ipopt::IpoptData& data, ::Ipopt::IpoptCalculatedQuantities& quantities) {
-    const auto* posed = dynamic_cast<::Ipopt::OrigIpoptNLP*>(::Ipopt::GetRawPtr(quantities.GetIpoptNLP()));
+    auto* posed = dynamic_cast<::Ipopt::OrigIpoptNLP*>(::Ipopt::GetRawPtr(quantities.GetIpoptNLP()));
     auto* adapter = posed ? dynamic_cast<::Ipopt::TNLPAdapter*>(::Ipopt::GetRawPtr(posed->nlp())) : nullptr;
     if (!adapter) return;
     Vector y(program_.variables()), nu(program_.rows());
@@ -343,9 +343,10 @@ void Ipopt::run(const Problem& problem, const WarmStart& warm, const Budget& bud
   ::Ipopt::SmartPtr<::Ipopt::IpoptApplication> application = new ::Ipopt::IpoptApplication(false);
   configure(options_, use_warm, *application);
   application->Initialize("");  // no options file, whatever lies in the working directory
-  const ::Ipopt::SmartPtr<Callbacks> callbacks = new Callbacks(
-      program, std::isfinite(force_scale) && force_scale > 0 ? force_scale : 1.0, start,
-      use_warm ? program.row_multipliers(start, warm.multipliers) : Vector::Zero(program.rows()), budget, result, observer);
+  const ::Ipopt::SmartPtr<Callbacks> callbacks =
+      new Callbacks(program, std::isfinite(force_scale) && force_scale > 0 ? force_scale : 1.0, start,
+                    use_warm ? program.row_multipliers(start, warm.multipliers) : Vector::Zero(program.rows()), budget,
+                    result, observer);
   ApplicationReturnStatus ending = ::Ipopt::Solve_Succeeded;  // nothing free: nothing to do
   if (program.variables() > 0) ending = application->OptimizeTNLP(::Ipopt::GetRawPtr(callbacks));
   callbacks->rethrow();

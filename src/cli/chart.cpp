@@ -153,7 +153,8 @@ constexpr const char* footer =
     "  violation    the largest violation of any step, which needs no reference\n"
     "Without --error: probe where the problem has expected values, else position.\n"
     "\n"
-    "The reference is the closed form, or else a tighter (tolerance / 100) or finer (step or width / 2) solution, by a\n"
+    "The reference is the closed form, or else a tighter (tolerance / 100) or finer (step or width / 2) solution, by "
+    "a\n"
     "method that is not charted where one solves it: ipopt, null_space, multiplier_loop, augmented_lagrangian are\n"
     "tried in this order, --reference asks for one. Its own error is estimated: from the next tolerance, or by\n"
     "Richardson's extrapolation of three steps or meshes. Errors below that say nothing.\n"
@@ -179,7 +180,8 @@ constexpr const char* footer =
 void add_choice(CLI::App& command, ChartArguments& arguments) {
   const auto list = CLI::MultiOptionPolicy::TakeAll;
   command
-      .add_option("PROBLEM", arguments.problems, "Problem files, names of problems of the catalogue, or folders of files")
+      .add_option("PROBLEM", arguments.problems,
+                  "Problem files, names of problems of the catalogue, or folders of files")
       ->required();
   command
       .add_option("--solvers", arguments.solvers,

@@ -49,7 +49,8 @@ int solve(const SolveArguments& arguments) {
     throw UsageError("--resume needs --out DIR, the directory of the run to go on with");
   if (arguments.resume && !arguments.accelerations.empty())
     throw UsageError("--record-accelerations needs a run from its beginning, without --resume");
-  if (arguments.history > 0 && arguments.out.empty()) throw UsageError("--history needs --out DIR, which it is written to");
+  if (arguments.history > 0 && arguments.out.empty())
+    throw UsageError("--history needs --out DIR, which it is written to");
   const std::atomic<bool>& stop_requested = stop_on_signals();
   const Scene scene = read_scene(find_problem(arguments.problem), overrides_of(arguments));
   if (arguments.history > scene.time.steps)

@@ -51,9 +51,11 @@ const std::vector<Cost>& costs() {
   static const std::vector<Cost> all{
       {"", "seconds of the solver",
        [](const ChartPoint& p) { return p.solver_seconds > 0 ? p.solver_seconds : p.seconds; }},
-      {"_linear_solves", "linear solves", [](const ChartPoint& p) { return static_cast<double>(p.counts.linear_solves); }},
+      {"_linear_solves", "linear solves",
+       [](const ChartPoint& p) { return static_cast<double>(p.counts.linear_solves); }},
       {"_flops", "flops of the factorisations", [](const ChartPoint& p) { return p.counts.factor_flops; }},
-      {"_memory", "peak memory, MB", [](const ChartPoint& p) { return static_cast<double>(p.peak_memory_bytes) / 1e6; }}};
+      {"_memory", "peak memory, MB",
+       [](const ChartPoint& p) { return static_cast<double>(p.peak_memory_bytes) / 1e6; }}};
   return all;
 }
 
@@ -207,11 +209,12 @@ Json points_table(const ProblemChart& problem, const std::string& name) {
                     p.counts.factor_flops / 1e9, static_cast<double>(p.peak_memory_bytes) / 1e6,
                     command_text(p.command)});
   }
-  return {{"id", "points_" + name},
-          {"title", problem.name},
-          {"columns",
-           {"false", "status", "solver", "value", "error", "front", "s", "s in all", "solves", "Gflop", "MB", "command"}},
-          {"rows", rows}};
+  return {
+      {"id", "points_" + name},
+      {"title", problem.name},
+      {"columns",
+       {"false", "status", "solver", "value", "error", "front", "s", "s in all", "solves", "Gflop", "MB", "command"}},
+      {"rows", rows}};
 }
 
 Chart picture_of(const Json& json) {
@@ -243,12 +246,8 @@ Chart picture_of(const Json& json) {
 }  // namespace
 
 Json chart_report(const ChartData& chart, const std::string& command) {
-  Json report{{"title", "Speed against accuracy"},
-              {"command", command},
-              {"version", chart.version},
-              {"summary", Json::array()},
-              {"charts", Json::array()},
-              {"tables", Json::array()}};
+  Json report{{"title", "Speed against accuracy"}, {"command", command},      {"version", chart.version},
+              {"summary", Json::array()},          {"charts", Json::array()}, {"tables", Json::array()}};
   report["machine"] = {{"cpu", chart.machine.cpu},
                        {"cores", chart.machine.cores},
                        {"threads of a solver", chart.threads},

@@ -121,8 +121,8 @@ std::vector<std::string> chart_words(const ChartData& chart, const ProblemChart&
                                   point.false_successes));
     }
     if (!point.solved() && point.outcome != "interrupted") {
-      lines.push_back(fmt::format("{}: {}{}{}", at_value(chart, point), point.status,
-                                  point.message.empty() ? "" : ": ", point.message));
+      lines.push_back(fmt::format("{}: {}{}{}", at_value(chart, point), point.status, point.message.empty() ? "" : ": ",
+                                  point.message));
     }
   }
   return lines;
@@ -137,8 +137,9 @@ std::string chart_terminal(const ChartData& chart, const std::string& folder) {
     fmt::format_to(out, "\n");
   }
   if (chart.problems.size() > 1) {
-    fmt::format_to(out, "all problems; correct: solved with an error of at most {}, mean: geometric with a shift of "
-                        "{:g} s, anything else counts {:g} s\n{}\n",
+    fmt::format_to(out,
+                   "all problems; correct: solved with an error of at most {}, mean: geometric with a shift of "
+                   "{:g} s, anything else counts {:g} s\n{}\n",
                    percent(chart.accuracy), mean_shift, chart.max_seconds, aligned(chart_scores(chart)));
   }
   if (chart.interrupted) fmt::format_to(out, "interrupted; the same command with --resume goes on\n");

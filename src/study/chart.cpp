@@ -50,8 +50,7 @@ void check_solvers(const ChartChoice& choice) {
   std::set<std::string> seen;
   for (const std::string& solver : choice.solvers) {
     solver_entry(solver);
-    if (!seen.insert(solver).second)
-      throw InputError("--solvers: found " + solver + " twice, allowed: each once");
+    if (!seen.insert(solver).second) throw InputError("--solvers: found " + solver + " twice, allowed: each once");
     if (choice.knob.kind == KnobKind::penalty && (solver == "ipopt" || solver == "nlopt"))
       throw InputError("--vary penalty: " + solver + " has no penalty, allowed: augmented Lagrangians");
   }
@@ -170,8 +169,8 @@ void ChartMaker::carry_out(const ChartJob& job, ChartPoint& point) {
   if (!stopped()) run_point(process_, job, point);
 }
 
-std::optional<Vector> ChartMaker::observed(const ChartPlan& plan, const PlannedRun& run,
-                                           const ChartPoint& point) const try {
+std::optional<Vector> ChartMaker::observed(const ChartPlan& plan, const PlannedRun& run, const ChartPoint& point) const
+    try {
   if (point.outcome != "finished") return {};
   return observe(read_stored_run(run_folder(process_, point)), plan.measure, run.vertices);
 } catch (const std::exception&) {
@@ -198,9 +197,8 @@ std::optional<Vector> ChartMaker::climb(const ChartPlan& plan, const PlannedRefe
   const ErrorMeasure& measure = plan.measure;
   std::optional<Richardson> extrapolated;
   if (planned.refines && found.size() == 3) {
-    extrapolated = richardson(found[2], found[1], found[0], 2, [&](const Vector& a, const Vector& b) {
-      return measure(a, b);
-    });
+    extrapolated =
+        richardson(found[2], found[1], found[0], 2, [&](const Vector& a, const Vector& b) { return measure(a, b); });
   }
   if (extrapolated) {
     reference.kind = "extrapolation";

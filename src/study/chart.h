@@ -14,17 +14,17 @@ namespace taut {
 
 struct ChartOptions {
   ChartChoice choice;
-  FindProblem find;  ///< of the names in `choice`
+  FindProblem find;                     ///< of the names in `choice`
   double max_seconds = 600;             ///< wall clock of each run
   double accuracy = 0.01;               ///< error up to which a solved run counts as correct
   std::int64_t memory_limit_bytes = 0;  ///< of each process; 0: none
   int threads = 1;
-  bool resume = false;           ///< take over the finished runs of the chart in `folder`
-  std::filesystem::path folder;  ///< where everything is written
-  std::vector<std::string> program;                      ///< command that starts taut
+  bool resume = false;               ///< take over the finished runs of the chart in `folder`
+  std::filesystem::path folder;      ///< where everything is written
+  std::vector<std::string> program;  ///< command that starts taut
   const std::atomic<bool>* stop = nullptr;
-  std::string version;                                   ///< of the calling program
-  std::function<void(int tasks)> on_start;               ///< before the first run
+  std::string version;                                      ///< of the calling program
+  std::function<void(int tasks)> on_start;                  ///< before the first run
   std::function<void(const ChartPoint& finished)> on_task;  ///< after each run, and once for all of a reference
 };
 

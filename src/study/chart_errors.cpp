@@ -98,8 +98,7 @@ ErrorMeasure error_measure(ErrorKind kind, const Scene& scene, double size) {
   ErrorMeasure measure{.kind = kind, .size = size, .probes = {}, .probe_scales = {}, .expected = {}, .source = ""};
   if (kind != ErrorKind::probe) return measure;
   const std::vector<scene::Probe>& probes = scene.output.probes;
-  if (probes.empty())
-    throw InputError(scene.source, "/output/probes", "found none, --error probe needs at least one");
+  if (probes.empty()) throw InputError(scene.source, "/output/probes", "found none, --error probe needs at least one");
   const bool closed =
       std::any_of(probes.begin(), probes.end(), [](const scene::Probe& probe) { return probe.expected.has_value(); });
   std::vector<double> expected;

@@ -25,11 +25,11 @@ std::vector<std::vector<int>> common_vertices(const std::vector<StartingPoints>&
 /// What the ends of runs are compared by.
 struct ErrorMeasure {
   ErrorKind kind = ErrorKind::position;
-  double size = 0;                         ///< of the scene, m
-  std::vector<std::string> probes;         ///< which, for ErrorKind::probe
-  std::vector<double> probe_scales;        ///< one each; 0: the reference's magnitude
-  std::optional<Vector> expected;          ///< closed form of the probes
-  std::string source;                      ///< of the closed form
+  double size = 0;                   ///< of the scene, m
+  std::vector<std::string> probes;   ///< which, for ErrorKind::probe
+  std::vector<double> probe_scales;  ///< one each; 0: the reference's magnitude
+  std::optional<Vector> expected;    ///< closed form of the probes
+  std::string source;                ///< of the closed form
 
   /// The error of what one run's end has against that of the reference, both as observe() gives them.
   double operator()(const Vector& result, const Vector& reference) const;

@@ -65,14 +65,8 @@ Json history_json(const ChartHistory& h) {
 }
 
 Json problem_json(const ProblemChart& p) {
-  Json json{{"name", p.name},
-            {"problem", p.problem},
-            {"folder", p.folder},
-            {"error", to_string(p.error)},
-            {"size", p.size},
-            {"references", Json::array()},
-            {"points", Json::array()},
-            {"histories", Json::array()}};
+  Json json{{"name", p.name}, {"problem", p.problem},        {"folder", p.folder},      {"error", to_string(p.error)},
+            {"size", p.size}, {"references", Json::array()}, {"points", Json::array()}, {"histories", Json::array()}};
   for (const ChartReference& reference : p.references) json["references"].push_back(reference_json(reference));
   for (const ChartPoint& point : p.points) json["points"].push_back(point_json(point));
   for (const ChartHistory& history : p.histories) json["histories"].push_back(history_json(history));

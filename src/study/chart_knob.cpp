@@ -168,7 +168,8 @@ std::vector<KnobValue> values_of(const KnobChoice& choice, const Scene& scene) {
   }
   std::vector<std::string> texts = choice.values;
   if (choice.kind == KnobKind::integrator) {
-    if (is_static(scene)) throw InputError("--vary integrator: " + scene.name + " is static, allowed: dynamic problems");
+    if (is_static(scene))
+      throw InputError("--vary integrator: " + scene.name + " is static, allowed: dynamic problems");
     if (texts.empty()) texts = {"implicit_euler", "bdf2", "generalised_alpha"};
   }
   for (const std::string& text : texts) {

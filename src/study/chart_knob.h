@@ -32,10 +32,10 @@ struct KnobChoice {
 KnobChoice parse_knob(const std::string& text);
 
 struct KnobValue {
-  std::string label;                                          ///< "1e-06", "8x8", "bdf2"
+  std::string label;                                         ///< "1e-06", "8x8", "bdf2"
   double number = std::numeric_limits<double>::quiet_NaN();  ///< tolerance; step, s; width of cells relative to the
                                                              ///< problem's own; penalty; else NaN where it is none
-  std::string problem;                                        ///< of a model: another file or name; else empty
+  std::string problem;                                       ///< of a model: another file or name; else empty
   Overrides overrides;
 };
 

@@ -102,8 +102,7 @@ class Planner {
     for (const std::string& solver : choice_.solvers) {
       PlannedRun& run = plan_.histories.emplace_back(PlannedRun{job_of(solver, {}, {}), "", {}});
       const int steps = plan_.scene.time.steps, step = choice_.history_step < 0 ? steps : choice_.history_step;
-      if (step > steps)
-        throw InputError(fmt::format("--history {}: {} has {} steps", step, plan_.scene.name, steps));
+      if (step > steps) throw InputError(fmt::format("--history {}: {} has {} steps", step, plan_.scene.name, steps));
       run.job.history_step = step;
       // Loads of a static step depend on the number of steps.
       if (plan_.scene.time.integrator != scene::Integrator::quasi_static)
@@ -218,7 +217,7 @@ class Planner {
   const FindProblem& find_;
   ChartPlan plan_;
   std::vector<StartingPoints> starts_;
-  std::map<std::string, std::size_t> start_of_;                  // by what makes the meshes
+  std::map<std::string, std::size_t> start_of_;                // by what makes the meshes
   std::vector<std::pair<PlannedRun*, std::size_t>> starting_;  // the runs stay in place
 };
 

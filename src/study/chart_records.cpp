@@ -103,8 +103,7 @@ std::vector<SolverScore> scores_of(const ChartData& chart) {
 
 ChartProfiles profiles_of(const ChartData& chart) {
   // A clock or a count of zero would have no logarithm.
-  const Matrix seconds =
-      costs_of(chart, [](const ChartPoint& point) { return std::max(point.solver_seconds, 1e-9); });
+  const Matrix seconds = costs_of(chart, [](const ChartPoint& point) { return std::max(point.solver_seconds, 1e-9); });
   const Matrix solves = costs_of(chart, [](const ChartPoint& point) {
     return static_cast<double>(std::max(point.counts.linear_solves, 1L)) / std::max(point.steps_asked, 1);
   });

@@ -34,8 +34,8 @@ struct ChartPoint {
   std::string message;                 ///< why it is not solved
   bool resumed = false;                ///< taken over from an earlier chart
   int steps_asked = 0, steps_done = 0, steps_solved = 0;
-  int false_successes = 0;                   ///< steps that the solver called solved and the judge does not
-  double seconds = 0, solver_seconds = 0;    ///< of the whole run by the clock, of the solver alone
+  int false_successes = 0;                 ///< steps that the solver called solved and the judge does not
+  double seconds = 0, solver_seconds = 0;  ///< of the whole run by the clock, of the solver alone
   Counts counts;
   std::int64_t peak_memory_bytes = 0;
   double violation = 0;  ///< largest scaled one of any step
@@ -51,12 +51,12 @@ struct ChartReference {
   std::string group;  ///< KnobValue::label where each value poses another problem, else empty
   /// "closed form", "extrapolation", "solution", "none needed", or "missing"
   std::string kind = "missing";
-  std::string text;                            ///< a sentence that says what it is
-  std::string solver;                          ///< of a solution
+  std::string text;                             ///< a sentence that says what it is
+  std::string solver;                           ///< of a solution
   std::vector<std::string> not_independent_of;  ///< charted solvers that are of the same method
-  std::optional<double> estimated_error;       ///< in the unit of the errors
-  std::optional<double> order;                 ///< of an extrapolation
-  std::vector<ChartPoint> runs;                ///< all that were tried, the finest of each solver first
+  std::optional<double> estimated_error;        ///< in the unit of the errors
+  std::optional<double> order;                  ///< of an extrapolation
+  std::vector<ChartPoint> runs;                 ///< all that were tried, the finest of each solver first
 };
 
 /// Convergence within one step.

@@ -15,9 +15,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double patience = 5;                          // s; `taut solve` keeps to its time by itself
-constexpr const char* outcome_file = "outcome.json";    // written last
-constexpr const char* log_file = "log.txt";             // beside the run's folder, which takes nothing else
+constexpr double patience = 5;                        // s; `taut solve` keeps to its time by itself
+constexpr const char* outcome_file = "outcome.json";  // written last
+constexpr const char* log_file = "log.txt";           // beside the run's folder, which takes nothing else
 
 std::string outcome_of(const ChildOutcome& child, const std::string& last_words) {
   constexpr int solved = 0, not_solved = 3, interrupted = 130;
@@ -39,12 +39,9 @@ std::string outcome_of(const ChildOutcome& child, const std::string& last_words)
 }
 
 void write_outcome(const fs::path& file, const ChartPoint& point, const std::string& version) {
-  const Json json{{"command", point.command},
-                  {"version", version},
-                  {"outcome", point.outcome},
-                  {"message", point.message},
-                  {"seconds", point.seconds},
-                  {"peak_memory_bytes", point.peak_memory_bytes}};
+  const Json json{{"command", point.command}, {"version", version},
+                  {"outcome", point.outcome}, {"message", point.message},
+                  {"seconds", point.seconds}, {"peak_memory_bytes", point.peak_memory_bytes}};
   write_atomically(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
@@ -97,8 +94,8 @@ fs::path run_folder(const ChartProcess& process, const ChartPoint& point) {
 std::vector<std::string> solve_words(const ChartJob& job, const ChartProcess& process) {
   std::vector<std::string> words{"taut", "solve", job.problem};
   for (const auto& [key, value] : job.overrides) words.insert(words.end(), {"--set", key + "=" + value});
-  words.insert(words.end(), {"--threads", std::to_string(process.threads), "--max-seconds",
-                             fmt::format("{}", process.max_seconds)});
+  words.insert(words.end(),
+               {"--threads", std::to_string(process.threads), "--max-seconds", fmt::format("{}", process.max_seconds)});
   if (job.history_step > 0)
     words.insert(words.end(), {"--history", std::to_string(job.history_step), "--out", "history"});
   return words;
