@@ -194,6 +194,7 @@ std::optional<Vector> ChartMaker::climb(const ChartPlan& plan, const PlannedRefe
   if (found.empty()) return {};
   reference.solver = ladder.solver;
   reference.kind = "solution";
+  const std::string whose = chart_.knob.kind == KnobKind::model ? "the last model by " : "";
   const ErrorMeasure& measure = plan.measure;
   std::optional<Richardson> extrapolated;
   if (planned.refines && found.size() == 3) {
@@ -204,11 +205,12 @@ std::optional<Vector> ChartMaker::climb(const ChartPlan& plan, const PlannedRefe
     reference.kind = "extrapolation";
     reference.order = extrapolated->order;
     reference.estimated_error = extrapolated->error;
-    reference.text =
-        fmt::format("{} at {}, extrapolated with their order of {:.2f}", ladder.solver, rungs, *reference.order);
+    reference.text = fmt::format("{}{} at {}, extrapolated with their order of {:.2f}", whose, ladder.solver, rungs,
+                                 *reference.order);
     return extrapolated->limit;
   }
-  reference.text = fmt::format("{} at {}", ladder.solver, planned.refines ? rungs : ladder.rungs.front().value);
+  reference.text =
+      fmt::format("{}{} at {}", whose, ladder.solver, planned.refines ? rungs : ladder.rungs.front().value);
   if (found.size() > 1) reference.estimated_error = measure(found[1], found[0]);
   if (planned.refines) {
     reference.text += found.size() == 3 ? ", the first of them: their differences follow no order"
