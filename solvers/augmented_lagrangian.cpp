@@ -92,6 +92,7 @@ struct AugmentedLagrangian::Run {
   const AugmentedLagrangianOptions& options;
   const Problem& problem;
   const Budget& budget;
+  const std::function<void(const Iterate&)>& observer;
   Workspace& work;
   Newton newton;
   Result result;     // what is being improved
@@ -100,15 +101,18 @@ struct AugmentedLagrangian::Run {
   std::vector<double> last_violation;
   Vector scratch;
 
-  Run(const AugmentedLagrangianOptions& o, const Problem& p, const Budget& b, Workspace& w)
+  Run(const AugmentedLagrangianOptions& o, const Problem& p, const Budget& b,
+      const std::function<void(const Iterate&)>& f, Workspace& w)
       : options(o),
         problem(p),
         budget(b),
+        observer(f),
         work(w),
         newton(w.assembly, *w.system, w.equalities, p.fixed_variables, p.node_size, o.newton) {}
 
   void start(const WarmStart& warm);
   double automatic_penalty(const Constraint& constraint) const;
+  void show(const Vector& x, const Vector& equal) const;
   Status inner(NewtonState& state);
   bool diverges(const Vector& x) const;
   void update(const NewtonState& state);
@@ -190,6 +194,19 @@ bool AugmentedLagrangian::Run::diverges(const Vector& x) const {
   return x.lpNorm<Eigen::Infinity>() > 1e10 * std::max(1.0, problem.initial_guess.lpNorm<Eigen::Infinity>());
 }
 
+/// Shows the observer a point with the multipliers that an update there would give. `equal` are those of the linear
+/// equalities.
+void AugmentedLagrangian::Run::show(const Vector& x, const Vector& equal) const {
+  std::vector<Vector> multipliers(result.multipliers.size());
+  double penalty = 0;
+  for (std::size_t k = 0; k < work.slacks.size(); ++k) {
+    work.slacks[k].updated_multipliers(x, std::numeric_limits<double>::infinity(), multipliers[k]);
+    penalty = std::max(penalty, work.slacks[k].penalty());
+  }
+  work.equalities.put(equal, work.slacks.size(), multipliers);
+  observer({x, multipliers, penalty, result.counts});
+}
+
 /// Minimises over x until its residual is small against the force that the multiplier update would change.
 Status AugmentedLagrangian::Run::inner(NewtonState& state) {
   double smallest = 0.5 * options.tolerances.stationarity * judged.force_scale;
@@ -197,6 +214,7 @@ Status AugmentedLagrangian::Run::inner(NewtonState& state) {
   return newton.minimise(
       state,
       [&](const NewtonState& now) {
+        if (observer) show(now.x, now.multipliers);
         // Without constraints nothing else looks at the forces again, which may be much larger than at the start: thin
         // shells would be asked for a balance below their round-off.
         if (work.slacks.empty() && ++seen % 8 == 0) {
@@ -337,7 +355,8 @@ bool AugmentedLagrangian::Run::central_path() {
         judged = judge(result.multipliers);
         return merit(judged);
       },
-      budget, result.counts, result.timings);
+      observer ? [&](const Vector& now) { show(now, equal); } : std::function<void(const Vector&)>(), budget,
+      result.counts, result.timings);
   for (std::size_t k = 0; k < work.slacks.size(); ++k) work.slacks[k].set_penalty(start_penalty[k]);
   if (solved) return true;
   result.x = start.x;
@@ -468,7 +487,7 @@ Result AugmentedLagrangian::solve(const Problem& problem, const WarmStart& warm,
       analysed = true;
     }
     const Index pivoted = workspace_->system->pivoted();
-    Run run(options_, problem, budget, *workspace_);
+    Run run(options_, problem, budget, observer, *workspace_);
     run.start(warm);
     run.loop();
     result = std::move(run.result);
@@ -479,6 +498,8 @@ Result AugmentedLagrangian::solve(const Problem& problem, const WarmStart& warm,
   }
   result.timings.total = total;
   result.timings.analysis = analysis;
+  if (const auto factorizations = static_cast<double>(result.counts.factorizations); factorizations > 0)
+    result.counts.factor_flops = factorizations * size().factor_flops;
   result.counts.matrix_allocations = analysed ? 1 : 0;
   return result;
 }

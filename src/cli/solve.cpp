@@ -24,7 +24,7 @@ namespace {
 struct SolveArguments {
   std::string problem, out, format, accelerations;
   std::vector<std::string> settings;
-  int threads = 0;
+  int threads = 0, history = 0;
   double max_seconds = 0;
   bool resume = false, json = false, quiet = false;
 };
@@ -47,8 +47,8 @@ int exit_code(Status status) {
 
 /// A model has no steps to resume, no frames and no modes.
 int solve_model(const SolveArguments& arguments) {
-  if (arguments.resume || !arguments.accelerations.empty() || !arguments.format.empty())
-    throw UsageError("--resume, --format and --record-accelerations are for scenes; " + arguments.problem +
+  if (arguments.resume || arguments.history > 0 || !arguments.accelerations.empty() || !arguments.format.empty())
+    throw UsageError("--resume, --history, --format and --record-accelerations are for scenes; " + arguments.problem +
                      " is an optimisation model");
   return solve_model_file({arguments.problem, arguments.out, parse_settings(arguments.settings), arguments.max_seconds,
                            arguments.json, arguments.quiet});
@@ -60,8 +60,12 @@ int solve(const SolveArguments& arguments) {
   if (arguments.resume && !arguments.accelerations.empty())
     throw UsageError("--record-accelerations needs a run from its beginning, without --resume");
   if (std::filesystem::path(arguments.problem).extension() == ".nl") return solve_model(arguments);
+  if (arguments.history > 0 && arguments.out.empty())
+    throw UsageError("--history needs --out DIR, which it is written to");
   const std::atomic<bool>& stop_requested = stop_on_signals();
   const Scene scene = read_scene(find_problem(arguments.problem), overrides_of(arguments));
+  if (arguments.history > scene.time.steps)
+    throw UsageError(fmt::format("--history {}: {} has {} steps", arguments.history, scene.name, scene.time.steps));
 
   std::unique_ptr<Progress> progress;
   RunOptions options;
@@ -70,6 +74,7 @@ int solve(const SolveArguments& arguments) {
   options.accelerations = arguments.accelerations;
   options.threads = arguments.threads;
   options.max_seconds = arguments.max_seconds;
+  options.history_step = arguments.history;
   options.stop = &stop_requested;
   options.version = TAUT_VERSION;
   if (!arguments.quiet) {
@@ -155,6 +160,11 @@ void add_solve(CLI::App& program, int& code) {
       ->add_option("--record-accelerations", arguments->accelerations,
                    "Write the spectral accelerations of a modal body to this file (taut replay)")
       ->type_name("FILE");
+  command
+      ->add_option("--history", arguments->history,
+                   "Judge every iterate of this step and write them to DIR/history.csv (taut chart)")
+      ->type_name("STEP")
+      ->check(CLI::Range(1, 1000000000));
   command->add_flag("--resume", arguments->resume,
                     "Go on with the run in DIR; ends with the bits of one never interrupted");
   command->add_flag("--json", arguments->json, "Print summary.json on standard output, and nothing else there");

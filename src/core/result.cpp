@@ -43,6 +43,7 @@ Counts& Counts::operator+=(const Counts& other) {
   symbolic_analyses += other.symbolic_analyses;
   matrix_allocations += other.matrix_allocations;
   function_evaluations += other.function_evaluations;
+  factor_flops += other.factor_flops;
   return *this;
 }
 

@@ -33,6 +33,7 @@ struct Counts {
   long symbolic_analyses = 0;     ///< orderings and symbolic factorisations
   long matrix_allocations = 0;    ///< sparse matrices or slot tables allocated
   long function_evaluations = 0;  ///< values of the objective, with or without derivatives
+  double factor_flops = 0;        ///< floating-point operations of the factorisations; 0 where not known
   Counts& operator+=(const Counts& other);
 };
 

@@ -38,7 +38,8 @@ Json counts_json(const Counts& counts) {
           {"pivoted_factorizations", counts.pivoted_factorizations},
           {"symbolic_analyses", counts.symbolic_analyses},
           {"matrix_allocations", counts.matrix_allocations},
-          {"function_evaluations", counts.function_evaluations}};
+          {"function_evaluations", counts.function_evaluations},
+          {"factor_flops", counts.factor_flops}};
 }
 
 Json timings_json(const Timings& t) {

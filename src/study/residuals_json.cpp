@@ -38,7 +38,8 @@ Counts read_counts(const Json& json) {
           json.value("pivoted_factorizations", 0L),
           json.at("symbolic_analyses"),
           json.at("matrix_allocations"),
-          json.at("function_evaluations")};
+          json.at("function_evaluations"),
+          json.value("factor_flops", 0.0)};
 }
 
 }  // namespace taut
