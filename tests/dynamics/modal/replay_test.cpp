@@ -6,7 +6,7 @@
 
 #include "dynamics/modal/modal_integrator.h"
 #include "support/random_values.h"
-#include "tests/dynamics/modal/small_basis.h"
+#include "support/small_basis.h"
 
 namespace taut {
 namespace {
