@@ -21,15 +21,15 @@ Vector mass_times(const Model& model, const Vector& v) {
 }
 
 /// The elastic energies about the start.
-struct Elasticity {
+struct ElasticState {
   Vector force, diagonal;        // gradient, zero at pins, and the diagonal of the Hessian
   double largest_force = 0;      // of a single element
   double largest_stiffness = 0;  // diagonal entry of a single element
 };
 
-Elasticity elasticity(const Model& model) {
+ElasticState elastic_state(const Model& model) {
   const Index size = model.positions.size();
-  Elasticity sum{Vector::Zero(size), Vector::Zero(size)};
+  ElasticState sum{Vector::Zero(size), Vector::Zero(size)};
   for (const auto& energy : model.elastic) {
     const Stencils& stencils = energy->stencils();
     Vector local(stencils.width()), gradient(stencils.width());
@@ -51,7 +51,7 @@ Elasticity elasticity(const Model& model) {
 
 /// Throws unless the elastic forces are small beside that of a single element, or beside what a displacement by 1e-4 of
 /// the body's size would cost.
-void expect_equilibrium(const Model& model, const Elasticity& elastic) {
+void expect_equilibrium(const Model& model, const ElasticState& elastic) {
   const double extent = model.positions.maxCoeff() - model.positions.minCoeff();
   const double scale = std::max(elastic.largest_force, 1e-4 * extent * elastic.largest_stiffness);
   const double force = elastic.force.lpNorm<Eigen::Infinity>();
@@ -245,7 +245,7 @@ SparseMatrix tetrahedron_curl(const std::vector<Vector3>& points, const std::vec
 }
 
 ModalBasis modal_basis(const Model& model, const SparseMatrix& curl, int count, int threads) {
-  const Elasticity elastic = elasticity(model);
+  const ElasticState elastic = elastic_state(model);
   expect_equilibrium(model, elastic);
   std::vector<const Energy*> energies;
   for (const auto& energy : model.elastic) energies.push_back(energy.get());
