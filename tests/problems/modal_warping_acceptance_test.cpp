@@ -60,7 +60,7 @@ class WarpingOnMeshes : public FilesTest {
       auto basis = std::make_shared<ModalBasis>(*model->modal);
       basis->warped = warped;
       model->modal = basis;
-      model->warped_loads.push_back(std::make_unique<WarpedLoad>("forces", basis, forces));
+      model->warped_loads.push_back(std::make_unique<WarpedLoad>("forces", *basis, forces));
     } else {
       model->dead_loads.push_back(std::make_unique<DeadLoad>("forces", forces));
     }

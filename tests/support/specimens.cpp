@@ -210,8 +210,8 @@ std::vector<EnergySpecimen> energy_specimens() {
        [](Pose pose) { return posed_points(specimen_prisms().nodes, pose); }},
       {"modal_stiffness", Form::projection,
        [] { return std::make_shared<ModalStiffness>("modes", Vector::LinSpaced(modes, 1, 9)); }},
-      {"warped_load", Form::majorant,
-       [] { return std::make_shared<WarpedLoad>("load", random_basis(modes), RandomValues(4).vector(12)); }},
+      {"warped_load", Form::projection,
+       [] { return std::make_shared<WarpedLoad>("load", *random_basis(modes), RandomValues(4).vector(12)); }},
   };
   for (EnergySpecimen& specimen : prism_specimens()) all.push_back(std::move(specimen));
   return all;

@@ -90,7 +90,7 @@ TEST(Warping, PureTorsionIsExactAsTheBarGetsSlenderWithAFirstOrderError) {
 TEST(WarpedLoad, WithFrozenRotationsIsLinearAndRightAtThem) {
   const auto basis = random_basis(8);
   const Vector q = RandomValues(2).vector(8);
-  WarpedLoad free("load", basis, RandomValues(4).vector(12)), frozen = free;
+  WarpedLoad free("load", *basis, RandomValues(4).vector(12)), frozen = free;
   frozen.freeze(q);
   expect_derivatives(frozen, q, SemidefiniteForm::projection, "frozen");
   EXPECT_NEAR(free.evaluate(0, q.data(), nullptr, nullptr, Curvature::exact),
