@@ -6,7 +6,7 @@ from itertools import permutations, product
 from pathlib import Path
 
 cells, size, height = 8, 0.4, 0.01
-bar_cells, bar_cell = (20, 3, 3), 0.02
+bar_cells, bar_size = (20, 4, 4), (0.4, 0.06, 0.06)
 
 
 def write_pillow():
@@ -38,8 +38,8 @@ def write_bar():
     number = {node: k + 1 for k, node in enumerate(nodes)}
     lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$Nodes", str(len(nodes))]
     for k, (i, j, l) in enumerate(nodes):
-        place = (i, j - bar_cells[1] / 2, l - bar_cells[2] / 2)
-        lines.append(f"{k + 1} " + " ".join(f"{bar_cell * x:.9g}" for x in place))
+        place = (i / bar_cells[0], j / bar_cells[1] - 0.5, l / bar_cells[2] - 0.5)
+        lines.append(f"{k + 1} " + " ".join(f"{size * x:.9g}" for size, x in zip(bar_size, place)))
     cubes = product(*(range(count) for count in bar_cells))
     tetrahedra = []
     for cube in cubes:
