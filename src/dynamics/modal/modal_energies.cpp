@@ -85,8 +85,9 @@ double WarpedLoad::evaluate(Index /*element*/, const double* q, double* gradient
     if (!hessian) continue;
     // Of f.R~(w) d the second derivative in d is zero: what is left is Phi^T B Psi, its transpose, and Psi^T C Psi.
     const Matrix6 local = warp_hessian(f, di, wi);
-    half.middleCols<3>(i) = shapes_.middleCols<3>(i).lazyProduct(local.topRightCorner<3, 3>()) +
-                            rotations_.middleCols<3>(i).lazyProduct(0.5 * local.bottomRightCorner<3, 3>());
+    const Matrix3 mixed = local.topRightCorner<3, 3>(), turning = 0.5 * local.bottomRightCorner<3, 3>();
+    half.middleCols<3>(i).noalias() = shapes_.middleCols<3>(i).lazyProduct(mixed);
+    half.middleCols<3>(i).noalias() += rotations_.middleCols<3>(i).lazyProduct(turning);
   }
   if (gradient) Eigen::Map<Vector>(gradient, modes) = shapes_ * by_d + rotations_ * by_w;
   if (hessian) {
