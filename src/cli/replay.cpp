@@ -164,6 +164,9 @@ void relay(const ReplayArguments& arguments, PacketSource& source, See see, Put 
 int replay(const ReplayArguments& arguments) {
   PacketSource source = open_source(arguments);
   if (!arguments.send.empty()) {
+    std::error_code error;
+    if (fs::equivalent(arguments.source, arguments.send, error))
+      throw UsageError(arguments.send + ": is the source itself, allowed: another target of --send");
     auto target = opened<PacketTarget>(arguments.send);
     relay(
         arguments, source, [](const StreamFrame&) {}, [&](const StreamPacket& packet) { target.put(packet); });

@@ -153,6 +153,7 @@ TEST_F(ReplayCommand, RefusesWhatItCannotRebuild) {
   const DatagramReceiver taken(0);
   expect_refused({"replay", "udp:" + std::to_string(taken.port())}, "Address already in use");
   expect_refused({"replay", folder("run.acc"), "--send", folder("missing") + "/x"}, "missing");
+  expect_refused({"replay", folder("run.acc"), "--send", folder("run.acc")}, "is the source itself");
   expect_refused({"replay", folder("run.acc"), "--window", "0"}, "--window");
   expect_refused({"replay", folder("run.acc"), "--against", folder("missing")}, "missing");
   expect_refused({"replay", folder("run.acc"), "--against", folder("none")}, "no keyframe");
