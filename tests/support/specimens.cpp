@@ -232,7 +232,9 @@ std::vector<ConstraintSpecimen> constraint_specimens() {
        [] {
          const std::vector<WarpedPosition::Held> held{{0, 0}, {1, 2}, {3, 1}};
          return std::make_shared<WarpedPosition>("hand", "body", 1, random_basis(modes), held, 1.0);
-       }},
+       },
+       {},
+       false},
   };
 }
 

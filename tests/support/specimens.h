@@ -47,6 +47,7 @@ struct ConstraintSpecimen {
   std::string name;
   std::function<std::shared_ptr<const Constraint>()> make;
   std::set<Pose> kinks = {};  ///< poses where it has no second derivative
+  bool interior = true;       ///< its set has inner points: there is a central path
 };
 /// Every constraint in constraints/ and src/dynamics/. A new constraint adds its line here.
 std::vector<ConstraintSpecimen> constraint_specimens();
