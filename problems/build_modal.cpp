@@ -94,7 +94,7 @@ void add_warped_loads(const Scene& scene, const Model& full, Model& model) {
                      "found a load that follows the body, allowed: gravity and dead loads of a modal body");
   }
   for (const auto& load : full.dead_loads) {
-    model.warped_loads.push_back(std::make_unique<WarpedLoad>(load->name(), model.modal, load->forces()));
+    model.warped_loads.push_back(std::make_unique<WarpedLoad>(load->name(), *model.modal, load->forces()));
     if (only_body(scene).modal->rotation != scene::WarpRotation::predictor) continue;
     model.freezers.push_back([load = model.warped_loads.back().get()](const Vector& q) { load->freeze(q); });
   }

@@ -26,4 +26,10 @@ Overrides parse_settings(const std::vector<std::string>& settings) {
   return overrides;
 }
 
+void make_folder(const std::string& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error) throw UsageError(path + ": cannot be created: " + error.message());
+}
+
 }  // namespace taut

@@ -50,14 +50,20 @@ CheckReport run_report(const CheckArguments& arguments) try {
   throw UsageError(error.what());
 }
 
-int check(const CheckArguments& arguments) {
-  const CheckReport report = arguments.frames.empty() ? run_report(arguments) : frames_report(arguments);
+void write_files(const CheckArguments& arguments, const CheckReport& report) try {
   if (!arguments.out.empty()) {
-    fs::create_directories(arguments.out);
+    make_folder(arguments.out);
     write_atomically(fs::path(arguments.out) / "check.json", check_json(report));
     write_atomically(fs::path(arguments.out) / "check.csv", check_csv(report));
   }
   if (!arguments.csv.empty()) write_atomically(arguments.csv, check_csv(report));
+} catch (const FileError& error) {
+  throw UsageError(error.what());
+}
+
+int check(const CheckArguments& arguments) {
+  const CheckReport report = arguments.frames.empty() ? run_report(arguments) : frames_report(arguments);
+  write_files(arguments, report);
   const std::string text = arguments.json ? check_json(report) : arguments.quiet ? "" : check_table(report);
   const bool printed = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
   if (!report.unusable.empty()) {
@@ -85,9 +91,9 @@ constexpr const char* footer =
     "time (0) and each further number is --dt later (the problem's time step). Numbers that are missing are named.\n"
     "Quote patterns, so that a pattern that matches nothing is noticed.\n"
     "\n"
-    "Exit codes: 0 all within tolerance, 1 internal error or a file that cannot be written, 2 wrong usage or input: "
-    "no\n"
-    "run, a missing or damaged file, other vertices or faces, a NaN; 3 something is violated or a claim is not true.\n"
+    "Exit codes: 0 all within tolerance, 1 internal error, 2 wrong usage or input: no run, a missing or damaged file,\n"
+    "other vertices or faces, a NaN, or a file that cannot be written; 3 something is violated or a claim is not "
+    "true.\n"
     "\n"
     "Examples:\n"
     "  taut check out/cloth\n"

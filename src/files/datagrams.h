@@ -10,22 +10,22 @@ namespace taut {
 /// Sends UDP datagrams to a port of this machine (127.0.0.1).
 class DatagramSender {
  public:
-  /// Throws std::runtime_error.
+  /// Throws FileError, which names the port.
   explicit DatagramSender(int port);
   ~DatagramSender();
   DatagramSender(const DatagramSender&) = delete;
   DatagramSender& operator=(const DatagramSender&) = delete;
-  /// A datagram that nobody receives is lost without an error. Throws std::runtime_error for others.
+  /// A datagram that nobody receives is lost without an error. Throws FileError for others.
   void send(std::string_view bytes);
 
  private:
-  int socket_;
+  int socket_, port_;
 };
 
 /// Receives those that come to a port of 127.0.0.1.
 class DatagramReceiver {
  public:
-  /// Port 0: the system chooses one. Throws std::runtime_error where the port is taken.
+  /// Port 0: the system chooses one. Throws FileError where the port is taken.
   explicit DatagramReceiver(int port);
   ~DatagramReceiver();
   DatagramReceiver(const DatagramReceiver&) = delete;

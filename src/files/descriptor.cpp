@@ -15,6 +15,10 @@ Descriptor::Descriptor(const std::filesystem::path& path, int flags)
   if (descriptor_ < 0) fail("open");
 }
 
+Descriptor::Descriptor(int open, const std::string& name) : path_(name), descriptor_(::dup(open)) {
+  if (descriptor_ < 0) fail("open");
+}
+
 Descriptor::~Descriptor() { ::close(descriptor_); }
 
 void Descriptor::write(std::string_view bytes) {

@@ -2,16 +2,19 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 namespace taut {
 
-/// An open POSIX file. The standard streams can neither fsync nor truncate, and both are what keeps results safe.
-/// Every failure throws FileError with the system's reason.
+/// An open POSIX file. The streams of the C++ library can neither fsync nor truncate, and both are what keeps results
+/// safe. Every failure throws FileError with the system's reason.
 class Descriptor {
  public:
   /// `flags` as for open(2); files are created with the permissions that the umask leaves.
   Descriptor(const std::filesystem::path& path, int flags);
+  /// A copy of one that is open, such as a standard stream; `name` is for messages.
+  Descriptor(int open, const std::string& name);
   ~Descriptor();
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;

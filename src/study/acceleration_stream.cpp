@@ -2,150 +2,80 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <random>
-#include <set>
+#include <limits>
 #include <stdexcept>
-#include <tuple>
 
 #include "files/svg_chart.h"
 
 namespace taut {
-namespace {
 
-auto key_of(const StreamHeader& h) { return std::tuple(h.stream, h.step, h.beta, h.gamma, h.modes); }
-
-StreamHeader commonest_header(const std::vector<StreamPacket>& packets) {
-  std::map<decltype(key_of(StreamHeader{})), int> counts;
-  StreamHeader best;
-  int most = 0;
-  for (const StreamPacket& packet : packets) {
-    const int count = ++counts[key_of(packet.header)];
-    if (count > most) {
-      most = count;
-      best = packet.header;
-    }
-  }
-  return best;
+StreamSender::StreamSender(const Channel& channel)
+    : loss_(channel.loss),
+      dropped_(channel.drop.begin(), channel.drop.end()),
+      keyframe_(channel.keyframe),
+      random_(channel.seed) {
+  if (!(loss_ >= 0 && loss_ <= 1)) throw std::invalid_argument("Channel: loss must be in [0, 1]");
+  if (keyframe_ < 0) throw std::invalid_argument("Channel: keyframe must be at least 0");
 }
 
-}  // namespace
-
-ReceivedStream received_stream(const std::vector<StreamPacket>& packets, std::uint64_t skipped_bytes) {
-  ReceivedStream stream;
-  stream.header = commonest_header(packets);
-  stream.skipped_bytes = skipped_bytes;
-  int last = 0;
-  for (const StreamPacket& packet : packets) {
-    if (packet.header != stream.header) {
-      ++stream.foreign;
-      continue;
-    }
-    const int step = static_cast<int>(std::min<std::uint32_t>(packet.step, 1u << 30));
-    if (packet.kind == StreamPacket::Kind::end) {
-      stream.steps = step;
-      stream.ended = true;
-      continue;
-    }
-    last = std::max(last, step);
-    auto& kind = packet.kind == StreamPacket::Kind::keyframe ? stream.keyframes : stream.accelerations;
-    if (!kind.emplace(step, packet).second) ++stream.duplicates;
-  }
-  if (!stream.ended) stream.steps = last;
-  return stream;
-}
-
-ReceivedStream read_stream(std::string_view bytes) {
-  PacketReader reader;
-  reader.add(bytes);
-  reader.finish();
+std::vector<StreamPacket> StreamSender::packets(const StreamHeader& header, const StreamFrame& frame) {
+  using Kind = StreamPacket::Kind;
+  const auto step = static_cast<std::uint32_t>(frame.step);
+  const auto& [q, v, a] = frame.state;
   std::vector<StreamPacket> packets;
-  while (auto packet = reader.next()) packets.push_back(std::move(*packet));
-  return received_stream(packets, reader.skipped());
-}
-
-RebuiltStream rebuild(const ReceivedStream& stream, Fill fill) {
-  if (stream.keyframes.empty()) throw std::runtime_error("no keyframe arrived, so there is no state to begin from");
-  const auto& [first, start] = *stream.keyframes.begin();
-  RebuiltStream rebuilt{stream.rule(), first, {}, {}};
-  Replay replay(rebuilt.rule, {start.q, start.v, start.a}, fill);
-  rebuilt.states.push_back(replay.state());
-  for (int step = first + 1; step <= stream.steps; ++step) {
-    const auto packet = stream.accelerations.find(step);
-    if (packet != stream.accelerations.end()) {
-      replay.advance(packet->second.a);
-    } else {
-      replay.advance({});
-      rebuilt.lost.push_back(step);
-    }
-    const auto keyframe = stream.keyframes.find(step);
-    if (keyframe != stream.keyframes.end())
-      replay.correct({keyframe->second.q, keyframe->second.v, keyframe->second.a});
-    rebuilt.states.push_back(replay.state());
-  }
-  return rebuilt;
-}
-
-std::vector<StreamPacket> sent(const ReceivedStream& original, const Channel& channel) {
-  if (!(channel.loss >= 0 && channel.loss <= 1)) throw std::invalid_argument("Channel: loss must be in [0, 1]");
-  if (channel.keyframe < 0) throw std::invalid_argument("Channel: keyframe must be at least 0");
-  const RebuiltStream states = rebuild(original, Fill::zero);
-  const std::set<int> dropped(channel.drop.begin(), channel.drop.end());
-  std::mt19937 random(channel.seed);
+  const bool first = !begun_;
+  begun_ = true;
+  if (first || (keyframe_ > 0 && frame.step % keyframe_ == 0))
+    packets.push_back({header, Kind::keyframe, step, q, v, a});
+  if (first || frame.lost) return packets;
   // Not a standard distribution, whose numbers differ between libraries.
-  const auto uniform = [&random] { return static_cast<double>(random()) / 4294967296.0; };
-  std::vector<StreamPacket> packets;
-  const auto add_keyframe = [&](int step) {
-    const SpectralState& state = states.states[static_cast<std::size_t>(step - states.first_step)];
-    packets.push_back(
-        {original.header, StreamPacket::Kind::keyframe, static_cast<std::uint32_t>(step), state.q, state.v, state.a});
-  };
-  add_keyframe(states.first_step);
-  for (const auto& [step, packet] : original.accelerations) {
-    const bool lost = uniform() < channel.loss || dropped.contains(step);
-    if (step <= states.first_step || step > original.steps) continue;
-    if (!lost) packets.push_back(packet);
-    if (channel.keyframe > 0 && step % channel.keyframe == 0) add_keyframe(step);
-  }
-  packets.push_back({original.header, StreamPacket::Kind::end, static_cast<std::uint32_t>(original.steps), {}, {}, {}});
+  const bool lost = static_cast<double>(random_()) / 4294967296.0 < loss_;
+  if (!lost && !dropped_.contains(frame.step)) packets.push_back({header, Kind::acceleration, step, {}, {}, a});
   return packets;
 }
 
-std::vector<Distortion> distortions(const RebuiltStream& original, const RebuiltStream& rebuilt) {
-  if (original.states.empty() || rebuilt.states.empty() || original.states[0].q.size() != rebuilt.states[0].q.size()) {
-    throw std::invalid_argument("distortions: the trajectories have different modes");
-  }
-  const std::set<int> lost(rebuilt.lost.begin(), rebuilt.lost.end());
-  std::vector<Distortion> lines;
-  for (std::size_t k = 0; k < rebuilt.states.size(); ++k) {
-    const int step = rebuilt.first_step + static_cast<int>(k), at = step - original.first_step;
-    if (at < 0 || at >= static_cast<int>(original.states.size())) continue;
-    const SpectralState &truth = original.states[static_cast<std::size_t>(at)], &found = rebuilt.states[k];
-    lines.push_back(
-        {step, step * rebuilt.rule.step, lost.contains(step), (found.q - truth.q).norm(), (found.v - truth.v).norm()});
-  }
-  return lines;
+StreamPacket StreamSender::end(const StreamHeader& header, int step) {
+  return {header, StreamPacket::Kind::end, static_cast<std::uint32_t>(step), {}, {}, {}};
 }
 
-std::string distortion_csv(const std::vector<Distortion>& distortions) {
-  std::string text = "step,time,lost,displacement,velocity\n";
-  for (const Distortion& d : distortions)
-    text += fmt::format("{},{},{},{},{}\n", d.step, d.time, d.lost ? 1 : 0, d.displacement, d.velocity);
-  return text;
+RebuiltStream read_stream(std::string_view bytes, Fill fill) {
+  PacketReader reader;
+  reader.add(bytes);
+  reader.finish();
+  StreamReceiver receiver(fill, std::numeric_limits<int>::max() / 4);
+  while (auto packet = reader.next()) receiver.take(std::move(*packet));
+  receiver.finish();
+  RebuiltStream rebuilt;
+  while (auto frame = receiver.next()) rebuilt.frames.push_back(std::move(*frame));
+  rebuilt.header = receiver.header().value_or(StreamHeader{});
+  rebuilt.counts = receiver.counts();
+  rebuilt.skipped_bytes = reader.skipped();
+  return rebuilt;
 }
 
-std::string trajectory_csv(const RebuiltStream& stream) {
+Distortion distortion(const StreamFrame& frame, const SpectralState& original, double step) {
+  if (frame.state.q.size() != original.q.size())
+    throw std::invalid_argument("distortion: the trajectories have different modes");
+  return {frame.step, frame.step * step, frame.lost, (frame.state.q - original.q).norm(),
+          (frame.state.v - original.v).norm()};
+}
+
+std::string distortion_header() { return "step,time,lost,displacement,velocity\n"; }
+
+std::string distortion_line(const Distortion& d) {
+  return fmt::format("{},{},{},{},{}\n", d.step, d.time, d.lost ? 1 : 0, d.displacement, d.velocity);
+}
+
+std::string trajectory_header(int modes) {
   std::string text = "step,time";
-  for (Index k = 0; k < (stream.states.empty() ? 0 : stream.states[0].q.size()); ++k)
-    text += fmt::format(",q{}", k + 1);
-  text += "\n";
-  for (std::size_t i = 0; i < stream.states.size(); ++i) {
-    const int step = stream.first_step + static_cast<int>(i);
-    text += fmt::format("{},{}", step, step * stream.rule.step);
-    for (const double q : stream.states[i].q) text += fmt::format(",{}", q);
-    text += "\n";
-  }
-  return text;
+  for (int k = 1; k <= modes; ++k) text += fmt::format(",q{}", k);
+  return text + "\n";
+}
+
+std::string trajectory_line(const StreamFrame& frame, double step) {
+  std::string text = fmt::format("{},{}", frame.step, frame.step * step);
+  for (const double q : frame.state.q) text += fmt::format(",{}", q);
+  return text + "\n";
 }
 
 void write_distortion_chart(const std::filesystem::path& path, const std::vector<Distortion>& distortions,

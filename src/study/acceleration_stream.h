@@ -2,42 +2,15 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <map>
+#include <random>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "dynamics/modal/replay.h"
-#include "files/acceleration_packets.h"
+#include "study/stream_receiver.h"
 
 namespace taut {
-
-/// What arrived of a stream, in whatever order: of packets of one kind and step the first counts.
-struct ReceivedStream {
-  StreamHeader header;
-  int steps = 0;       ///< by its end packet, or the last step that anything is known of
-  bool ended = false;  ///< the end packet arrived
-  std::map<int, StreamPacket> accelerations, keyframes;  ///< by step
-  std::uint64_t skipped_bytes = 0;                       ///< that belonged to no packet
-  int duplicates = 0, foreign = 0;                       ///< packets of a step that was there; of another stream
-
-  NewmarkRule rule() const { return {header.step, header.beta, header.gamma}; }
-};
-
-/// Sorts packets into a stream. Those of another header than most have are foreign.
-ReceivedStream received_stream(const std::vector<StreamPacket>& packets, std::uint64_t skipped_bytes);
-ReceivedStream read_stream(std::string_view bytes);
-
-/// A trajectory that was rebuilt.
-struct RebuiltStream {
-  NewmarkRule rule;
-  int first_step = 0;                 ///< of the first keyframe, where it begins
-  std::vector<SpectralState> states;  ///< of first_step, first_step + 1, ...
-  std::vector<int> lost;              ///< steps whose acceleration did not arrive
-};
-
-/// Throws std::runtime_error where no keyframe arrived, from which it could begin.
-RebuiltStream rebuild(const ReceivedStream& stream, Fill fill);
 
 /// What happens to packets on the way. Accelerations only are lost.
 struct Channel {
@@ -49,11 +22,38 @@ struct Channel {
   bool changes() const { return loss > 0 || !drop.empty() || keyframe > 0; }
 };
 
-/// The packets of a complete stream as they leave the channel, in order. Throws std::invalid_argument for a loss
-/// outside [0, 1] or a negative number.
-std::vector<StreamPacket> sent(const ReceivedStream& original, const Channel& channel);
+/// Sends the frames of a stream through a channel.
+class StreamSender {
+ public:
+  /// Throws std::invalid_argument for a loss outside [0, 1] or a negative number.
+  explicit StreamSender(const Channel& channel);
 
-/// How far a rebuilt trajectory is from the original, a line per step that both have.
+  /// What leaves the channel of a frame: the first one as a keyframe; of others a keyframe where one is due, and the
+  /// acceleration unless it is lost. The keyframe goes first: the acceleration may make the frame certain.
+  std::vector<StreamPacket> packets(const StreamHeader& header, const StreamFrame& frame);
+  /// The end packet of a stream whose last step this is.
+  static StreamPacket end(const StreamHeader& header, int step);
+
+ private:
+  double loss_;
+  std::set<int> dropped_;
+  int keyframe_;
+  std::mt19937 random_;
+  bool begun_ = false;
+};
+
+/// A trajectory that was rebuilt as a whole.
+struct RebuiltStream {
+  StreamHeader header;
+  std::vector<StreamFrame> frames;  ///< none: no keyframe arrived
+  StreamReceiver::Counts counts;
+  std::uint64_t skipped_bytes = 0;  ///< that belonged to no packet
+};
+
+/// Rebuilds what `bytes` hold, in whatever order.
+RebuiltStream read_stream(std::string_view bytes, Fill fill = Fill::zero);
+
+/// How far a frame is from the original.
 struct Distortion {
   int step = 0;
   double time = 0;  ///< s
@@ -61,12 +61,14 @@ struct Distortion {
   double displacement = 0;  ///< |dq|, kg^(1/2) m
   double velocity = 0;      ///< |dv|, kg^(1/2) m/s
 };
-std::vector<Distortion> distortions(const RebuiltStream& original, const RebuiltStream& rebuilt);
+/// `step` is h, s. Throws std::invalid_argument for an original of other modes.
+Distortion distortion(const StreamFrame& frame, const SpectralState& original, double step);
 
-/// Header "step,time,lost,displacement,velocity", then a line each.
-std::string distortion_csv(const std::vector<Distortion>& distortions);
-/// Header "step,time,q1,q2,...", then a line each.
-std::string trajectory_csv(const RebuiltStream& stream);
+/// Lines of distortion.csv (step,time,lost,displacement,velocity) and of trajectory.csv (step,time,q1,q2,...).
+std::string distortion_header();
+std::string distortion_line(const Distortion& distortion);
+std::string trajectory_header(int modes);
+std::string trajectory_line(const StreamFrame& frame, double step);
 /// Writes |dq| over time as an SVG, losses marked. Throws FileError.
 void write_distortion_chart(const std::filesystem::path& path, const std::vector<Distortion>& distortions,
                             const std::string& title);

@@ -13,19 +13,19 @@
 namespace taut::benchmarks {
 namespace {
 
-Scene ruler(const std::string& model) {
+Scene ruler(const std::string& model, double gravity = -9.81) {
   const auto file = std::filesystem::temp_directory_path() / ("taut_benchmark_" + model + ".json");
   const bool modal = model == "modal";
   std::ofstream(file) << fmt::format(
       R"({{
-    "format": 1, "time": {{ "integrator": "newmark", "step": 0.002, "steps": 1000 }}, "gravity": [0, 0, -9.81],
+    "format": 1, "time": {{ "integrator": "newmark", "step": 0.002, "steps": 1000 }}, "gravity": [0, 0, {}],
     "bodies": {{ "ruler": {{ "model": "{}", "mesh": {{ "grid": {{ "size": [0.3, 0.03], "cells": [40, 4] }} }},
       "thickness": 0.001, "density": 7850, "mass": "consistent",
       "material": {{ "law": "stvk", "young_modulus": 2e11, "poisson_ratio": 0.3 }} {} }} }},
     "constraints": {{ {} "hand": {{ "type": "pin", "body": "ruler",
       "select": {{ "corners": ["x1y0", "x1y1"] }}, "surface": "both",
       "motion": {{ "velocity": [0, 0, 0.01] }} }} }} }})",
-      model, modal ? R"(, "modal": { "modes": 50, "clamp": { "edges": ["x0"] } })" : "",
+      gravity, model, modal ? R"(, "modal": { "modes": 50, "clamp": { "edges": ["x0"] } })" : "",
       modal ? "" : R"("clamp": { "type": "pin", "body": "ruler", "select": { "edges": ["x0"] } },)");
   return read_scene(file);
 }
@@ -48,8 +48,8 @@ void BM_modal_step(benchmark::State& state) {
 }
 BENCHMARK(BM_modal_step)->Unit(benchmark::kMicrosecond);
 
-void steps_of(benchmark::State& state, const std::string& model) {
-  const Scene scene = ruler(model);
+void steps_of(benchmark::State& state, const std::string& model, double gravity = -9.81) {
+  const Scene scene = ruler(model, gravity);
   const auto body = build_model(scene);
   const auto solver = build_solver(scene, 1);
   Stepper stepper(*body, time_options(scene));
@@ -60,8 +60,10 @@ void steps_of(benchmark::State& state, const std::string& model) {
   }
 }
 void BM_modal_step_as_problem(benchmark::State& state) { steps_of(state, "modal"); }
+void BM_modal_step_as_problem_without_gravity(benchmark::State& state) { steps_of(state, "modal", 0); }
 void BM_full_shell_step(benchmark::State& state) { steps_of(state, "thick_shell"); }
 BENCHMARK(BM_modal_step_as_problem)->Unit(benchmark::kMicrosecond);
+BENCHMARK(BM_modal_step_as_problem_without_gravity)->Unit(benchmark::kMicrosecond);
 BENCHMARK(BM_full_shell_step)->Unit(benchmark::kMicrosecond);
 
 }  // namespace

@@ -109,6 +109,8 @@ TEST_F(CheckProgram, WrongUsageAndInputExitWithTwoAndOneLine) {
   expect_refused(frames({"--dt", "fast"}), "expected a number above 0, got fast");
   expect_refused(frames({"--first-time", "inf"}), "expected a number, got inf");
   expect_refused({"check", "no_such_problem", "--frames", "x"}, "no such file, and no problem of the catalogue");
+  expect_refused({"check", folder("run"), "--out", folder("mine") + "/thesis.txt/x"}, "cannot be created");
+  expect_refused({"check", folder("run"), "--csv", folder("none") + "/a.csv"}, "none/a.csv");
   flip(path("run/checkpoint.bin"), 300, 1);
   expect_refused({"check", folder("run")}, "damaged checkpoint");
 }

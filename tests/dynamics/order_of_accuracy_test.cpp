@@ -95,6 +95,13 @@ TimeOptions with(Integrator integrator, double spectral_radius = 0.8) {
   return options;
 }
 
+TimeOptions with_newmark(double beta, double gamma) {
+  TimeOptions options = with(Integrator::newmark);
+  options.beta = beta;
+  options.gamma = gamma;
+  return options;
+}
+
 class OrderOfAccuracy : public testing::TestWithParam<Scheme> {};
 
 INSTANTIATE_TEST_SUITE_P(All, OrderOfAccuracy,
@@ -102,7 +109,9 @@ INSTANTIATE_TEST_SUITE_P(All, OrderOfAccuracy,
                                          Scheme{"bdf2", with(Integrator::bdf2), 2},
                                          Scheme{"generalised_alpha", with(Integrator::generalised_alpha), 2},
                                          Scheme{"generalised_alpha_0", with(Integrator::generalised_alpha, 0.0), 2},
-                                         Scheme{"average_acceleration", with(Integrator::generalised_alpha, 1.0), 2}),
+                                         Scheme{"average_acceleration", with(Integrator::generalised_alpha, 1.0), 2},
+                                         Scheme{"newmark_average_acceleration", with_newmark(0.25, 0.5), 2},
+                                         Scheme{"newmark_default", with_newmark(0.3025, 0.6), 1}),
                          [](const auto& scheme) { return std::string(scheme.param.name); });
 
 TEST_P(OrderOfAccuracy, IsReachedInAFreeNonlinearVibration) {

@@ -71,6 +71,7 @@ TEST_P(SlackOfEveryConstraint, UpdateIsCappedInNormAndKeepsItsDirection) {
 }
 
 TEST_P(SlackOfEveryConstraint, PrimalDualStepReducesTheMismatchAtFirstOrderByItsFraction) {
+  if (!GetParam().interior) GTEST_SKIP() << "an equality has no central path: its inverse is cut at 1e8";
   slack_.set_penalty(20.0);
   slack_.set_multipliers(RandomValues(2).vector(rows_));
   const double epsilon = 1.0, target = 0.7;  // wide, so that a step of 1e-5 is small everywhere

@@ -6,6 +6,8 @@
 
 #include "constraints/obstacle.h"
 #include "constraints/strain_limit.h"
+#include "dynamics/modal/modal_energies.h"
+#include "dynamics/modal/warped_position.h"
 #include "energies/dead_load.h"
 #include "energies/end_moment.h"
 #include "energies/foundation.h"
@@ -19,6 +21,7 @@
 #include "geometry/layered_mesh.h"
 #include "support/meshes.h"
 #include "support/random_values.h"
+#include "support/small_basis.h"
 
 namespace taut {
 namespace {
@@ -90,6 +93,9 @@ std::vector<EnergySpecimen> prism_specimens() {
           prism_specimen("uncured_neo_hookean", neo_hookean, uncured),
           prism_specimen("assumed_ply_stabilised", ply, stabilised)};
 }
+
+/// Modal ones have the first coordinates of the sheet for modes.
+constexpr int modes = 8;
 
 std::vector<int> sheet_vertices() {
   std::vector<int> vertices(specimen_sheet().vertices.size());
@@ -202,6 +208,10 @@ std::vector<EnergySpecimen> energy_specimens() {
          return std::make_shared<Inertia>(std::move(inertia));
        },
        [](Pose pose) { return posed_points(specimen_prisms().nodes, pose); }},
+      {"modal_stiffness", Form::projection,
+       [] { return std::make_shared<ModalStiffness>("modes", Vector::LinSpaced(modes, 1, 9)); }},
+      {"warped_load", Form::projection,
+       [] { return std::make_shared<WarpedLoad>("load", *random_basis(modes), RandomValues(4).vector(12)); }},
   };
   for (EnergySpecimen& specimen : prism_specimens()) all.push_back(std::move(specimen));
   return all;
@@ -218,6 +228,13 @@ std::vector<ConstraintSpecimen> constraint_specimens() {
        {Pose::crumpled, Pose::bent, Pose::uniform, Pose::nearly_uniform}},
       {"half_space", make_half_space},
       {"sphere_obstacle", make_sphere},
+      {"warped_position",
+       [] {
+         const std::vector<WarpedPosition::Held> held{{0, 0}, {1, 2}, {3, 1}};
+         return std::make_shared<WarpedPosition>("hand", "body", 1, random_basis(modes), held, 1.0);
+       },
+       {},
+       false},
   };
 }
 

@@ -39,7 +39,7 @@ struct EnergySpecimen {
   std::function<std::shared_ptr<const Energy>()> make;  ///< on specimen_sheet(), with whatever it borrows kept alive
   std::function<Vector(Pose)> posed = taut::posed;      ///< all variables of its mesh in a pose
 };
-/// Every energy in src/energies/. A new energy adds its line here.
+/// Every energy in src/energies/ and src/dynamics/. A new energy adds its line here.
 std::vector<EnergySpecimen> energy_specimens();
 
 /// One kind of constraint.
@@ -47,8 +47,9 @@ struct ConstraintSpecimen {
   std::string name;
   std::function<std::shared_ptr<const Constraint>()> make;
   std::set<Pose> kinks = {};  ///< poses where it has no second derivative
+  bool interior = true;       ///< its set has inner points: there is a central path
 };
-/// Every constraint in constraints/. A new constraint adds its line here.
+/// Every constraint in constraints/ and src/dynamics/. A new constraint adds its line here.
 std::vector<ConstraintSpecimen> constraint_specimens();
 
 /// What GoogleTest calls a parametrised case.

@@ -20,46 +20,44 @@ Vector mass_times(const Model& model, const Vector& v) {
   return out;
 }
 
-/// Gradient of the elastic energies at the start, zero at pins; and what it is small against: the largest force of a
-/// single element, or what a displacement by 1e-4 of the body's size would cost.
-std::pair<Vector, double> elastic_force(const Model& model) {
-  std::array<double, max_stencil_width> local, gradient;
-  Vector force = Vector::Zero(model.positions.size());
-  double largest = 0;
-  const double extent = (model.positions.maxCoeff() - model.positions.minCoeff());
-  std::vector<double> hessian(max_stencil_width * max_stencil_width);
+/// The elastic energies about the start.
+struct ElasticState {
+  Vector force, diagonal;        // gradient, zero at pins, and the diagonal of the Hessian
+  double largest_force = 0;      // of a single element
+  double largest_stiffness = 0;  // diagonal entry of a single element
+};
+
+ElasticState elastic_state(const Model& model) {
+  const Index size = model.positions.size();
+  ElasticState sum{Vector::Zero(size), Vector::Zero(size)};
   for (const auto& energy : model.elastic) {
     const Stencils& stencils = energy->stencils();
+    Vector local(stencils.width()), gradient(stencils.width());
+    Matrix hessian(stencils.width(), stencils.width());
     for (Index element = 0; element < stencils.count(); ++element) {
       stencils.gather(element, model.positions, local.data());
       energy->evaluate(element, local.data(), gradient.data(), hessian.data(), Curvature::exact);
       for (int i = 0; i < stencils.width(); ++i) {
-        largest =
-            std::max(largest, 1e-4 * extent * std::abs(hessian[static_cast<std::size_t>(i * (stencils.width() + 1))]));
-        force[stencils[element][i]] += gradient[i];
-        largest = std::max(largest, std::abs(gradient[i]));
+        sum.force[stencils[element][i]] += gradient[i];
+        sum.diagonal[stencils[element][i]] += hessian(i, i);
       }
+      sum.largest_force = std::max(sum.largest_force, gradient.lpNorm<Eigen::Infinity>());
+      sum.largest_stiffness = std::max(sum.largest_stiffness, hessian.diagonal().lpNorm<Eigen::Infinity>());
     }
   }
-  for (const PinnedVariable& pin : model.pins) force[pin.variable] = 0;
-  return {force, largest};
+  for (const PinnedVariable& pin : model.pins) sum.force[pin.variable] = 0;
+  return sum;
 }
 
-/// About the largest value of the whole spectrum: the largest K_ii over M_ii, 1/s^2.
-double largest_value(const Model& model) {
-  std::array<double, max_stencil_width> local, gradient;
-  std::vector<double> hessian(max_stencil_width * max_stencil_width);
-  Vector diagonal = Vector::Zero(model.positions.size());
-  for (const auto& energy : model.elastic) {
-    const Stencils& stencils = energy->stencils();
-    for (Index element = 0; element < stencils.count(); ++element) {
-      stencils.gather(element, model.positions, local.data());
-      energy->evaluate(element, local.data(), gradient.data(), hessian.data(), Curvature::exact);
-      for (int i = 0; i < stencils.width(); ++i)
-        diagonal[stencils[element][i]] += hessian[static_cast<std::size_t>(i * (stencils.width() + 1))];
-    }
-  }
-  return diagonal.cwiseQuotient(mass_times(model, Vector::Ones(diagonal.size()))).cwiseAbs().maxCoeff();
+/// Throws unless the elastic forces are small beside that of a single element, or beside what a displacement by 1e-4 of
+/// the body's size would cost.
+void expect_equilibrium(const Model& model, const ElasticState& elastic) {
+  const double extent = model.positions.maxCoeff() - model.positions.minCoeff();
+  const double scale = std::max(elastic.largest_force, 1e-4 * extent * elastic.largest_stiffness);
+  const double force = elastic.force.lpNorm<Eigen::Infinity>();
+  if (force <= 1e-8 * scale) return;
+  throw std::invalid_argument("the start is no equilibrium: an elastic force of " + std::to_string(force) +
+                              " N is not balanced");
 }
 
 /// Makes the columns M-orthonormal, in order.
@@ -247,11 +245,8 @@ SparseMatrix tetrahedron_curl(const std::vector<Vector3>& points, const std::vec
 }
 
 ModalBasis modal_basis(const Model& model, const SparseMatrix& curl, int count, int threads) {
-  const auto [force, scale] = elastic_force(model);
-  if (force.lpNorm<Eigen::Infinity>() > 1e-8 * scale && scale > 0) {
-    throw std::invalid_argument("the start is no equilibrium: an elastic force of " +
-                                std::to_string(force.lpNorm<Eigen::Infinity>()) + " N is not balanced");
-  }
+  const ElasticState elastic = elastic_state(model);
+  expect_equilibrium(model, elastic);
   std::vector<const Energy*> energies;
   for (const auto& energy : model.elastic) energies.push_back(energy.get());
   const std::vector<NaturalMode> modes = natural_modes(model, energies, model.positions, count, threads);
@@ -273,8 +268,11 @@ ModalBasis modal_basis(const Model& model, const SparseMatrix& curl, int count, 
     orthonormalise(model, basis.shapes);
     basis.eigenvalues.head(basis.rigid).setZero();
   }
-  // What costs no energy has only round-off for a value, beside those that do.
-  const double least = std::max(1e-9 * basis.eigenvalues.cwiseAbs().maxCoeff(), 1e-14 * largest_value(model));
+  // What costs no energy has only round-off for a value, beside those that do: the largest of the whole spectrum is
+  // about the largest K_ii over M_ii.
+  const Vector mass = mass_times(model, Vector::Ones(elastic.diagonal.size()));
+  const double largest = elastic.diagonal.cwiseQuotient(mass).cwiseAbs().maxCoeff();
+  const double least = std::max(1e-9 * basis.eigenvalues.cwiseAbs().maxCoeff(), 1e-14 * largest);
   for (int k = basis.rigid; k < count; ++k) {
     if (basis.eigenvalues[k] > least) continue;
     throw std::invalid_argument("mode " + std::to_string(k + 1) + " costs no energy (value " +

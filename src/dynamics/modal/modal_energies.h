@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <string>
 
 #include "core/energy.h"
@@ -31,7 +30,7 @@ class ModalStiffness final : public Energy {
 class WarpedLoad final : public Energy {
  public:
   /// `forces`: 3 entries a node, N.
-  WarpedLoad(std::string name, std::shared_ptr<const ModalBasis> basis, Vector forces);
+  WarpedLoad(std::string name, const ModalBasis& basis, const Vector& forces);
 
   void set_factor(double factor) { factor_ = factor; }
   /// Holds the rotations of all nodes at those of q (named option: MW takes them from the predictor).
@@ -44,14 +43,11 @@ class WarpedLoad final : public Energy {
 
  private:
   std::string name_;
-  std::shared_ptr<const ModalBasis> basis_;
   Stencils stencils_;
-  std::vector<Index> nodes_;   // that are loaded
-  Matrix shapes_, rotations_;  // of those nodes
-  Vector forces_;              // on those nodes
+  Matrix shapes_, rotations_;  // of the loaded nodes, transposed: modes x 3 nodes
+  Vector forces_;              // on them, N
   double factor_ = 1;
-  bool frozen_ = false;
-  Vector frozen_force_;  // sum_i Phi_i^T R~(w~_i)^T f_i
+  Vector frozen_force_;  // sum_i Phi_i^T R~(w~_i)^T f_i; empty unless frozen
 };
 
 /// Stencil of one element with variables 0 to count - 1.

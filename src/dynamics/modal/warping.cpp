@@ -5,6 +5,22 @@
 namespace taut {
 namespace {
 
+constexpr int terms = 10;
+
+/// (-1)^k / (2k+2)! and (-1)^k / (2k+3)!.
+struct SeriesTable {
+  double even[terms] = {}, odd[terms] = {};
+  constexpr SeriesTable() {
+    double term = 0.5;
+    for (int k = 0; k < terms; ++k) {
+      even[k] = term;
+      odd[k] = term / (2 * k + 3);
+      term /= -(2.0 * k + 3) * (2 * k + 4);
+    }
+  }
+};
+constexpr SeriesTable table;
+
 /// a = (1 - cos t)/t^2 and b = (t - sin t)/t^3 as functions of s = t^2, with their first two derivatives in s.
 struct Coefficients {
   double a, a1, a2, b, b1, b2;
@@ -28,21 +44,16 @@ struct Coefficients {
   /// a = sum (-s)^k / (2k+2)!, b = sum (-s)^k / (2k+3)!.
   void series(double s) {
     a = a1 = a2 = b = b1 = b2 = 0;
-    double even = 0.5, odd = 1.0 / 6;                  // (-1)^k / (2k+2)! and (-1)^k / (2k+3)!
-    double power = 1, power_before = 0, previous = 0;  // s^k, s^(k-1), s^(k-2)
-    for (int k = 0; k < 10; ++k) {
-      a += even * power;
-      b += odd * power;
-      a1 += k * even * power_before;
-      b1 += k * odd * power_before;
-      a2 += k * (k - 1) * even * previous;
-      b2 += k * (k - 1) * odd * previous;
-      previous = power_before;
-      power_before = power;
-      power *= s;
-      even /= -(2.0 * k + 3) * (2 * k + 4);
-      odd /= -(2.0 * k + 4) * (2 * k + 5);
+    for (int k = terms - 1; k >= 0; --k) {  // Horner's scheme for the polynomial and its derivatives
+      a2 = a2 * s + a1;
+      b2 = b2 * s + b1;
+      a1 = a1 * s + a;
+      b1 = b1 * s + b;
+      a = a * s + table.even[k];
+      b = b * s + table.odd[k];
     }
+    a2 *= 2;
+    b2 *= 2;
   }
 };
 

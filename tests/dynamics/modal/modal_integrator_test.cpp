@@ -5,7 +5,7 @@
 #include <Eigen/SVD>
 #include <cmath>
 
-#include "tests/dynamics/modal/small_basis.h"
+#include "support/small_basis.h"
 
 namespace taut {
 namespace {

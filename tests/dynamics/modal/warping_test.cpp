@@ -6,9 +6,8 @@
 #include <numbers>
 
 #include "dynamics/modal/modal_energies.h"
-#include "dynamics/modal/warped_position.h"
 #include "support/derivative_check.h"
-#include "tests/dynamics/modal/small_basis.h"
+#include "support/small_basis.h"
 
 namespace taut {
 namespace {
@@ -88,35 +87,14 @@ TEST(Warping, PureTorsionIsExactAsTheBarGetsSlenderWithAFirstOrderError) {
   EXPECT_LE(torsion_error(1e-12, 0.5), 1e-11);
 }
 
-TEST(WarpedLoad, HasTaylorSlopesTwoAndThree) {
-  const auto basis = random_basis(8);
-  const WarpedLoad load("load", basis, RandomValues(4).vector(12));
-  for (unsigned seed = 1; seed <= 6; ++seed)
-    expect_derivatives(load, (seed < 3 ? 0.1 : 1.0) * RandomValues(seed).vector(8), SemidefiniteForm::majorant, "load");
-}
-
 TEST(WarpedLoad, WithFrozenRotationsIsLinearAndRightAtThem) {
   const auto basis = random_basis(8);
   const Vector q = RandomValues(2).vector(8);
-  WarpedLoad free("load", basis, RandomValues(4).vector(12)), frozen = free;
+  WarpedLoad free("load", *basis, RandomValues(4).vector(12)), frozen = free;
   frozen.freeze(q);
   expect_derivatives(frozen, q, SemidefiniteForm::projection, "frozen");
   EXPECT_NEAR(free.evaluate(0, q.data(), nullptr, nullptr, Curvature::exact),
               frozen.evaluate(0, q.data(), nullptr, nullptr, Curvature::exact), 1e-14);
-}
-
-TEST(ModalStiffness, HasTaylorSlopesTwoAndThree) {
-  expect_derivatives(ModalStiffness("stiffness", Vector::LinSpaced(5, 1, 9)), RandomValues(3).vector(5),
-                     SemidefiniteForm::projection, "stiffness");
-}
-
-TEST(WarpedPosition, HasJacobianAndContractedHessianAtTaylorSlopesTwoAndThree) {
-  const WarpedPosition position("hand", "body", 1, random_basis(8), {{0, 0}, {1, 2}, {3, 1}}, 1);
-  for (unsigned seed = 1; seed <= 6; ++seed) {
-    const Contraction contraction(position, RandomValues(seed).vector(3));
-    expect_derivatives(contraction, (seed < 3 ? 0.1 : 1.0) * RandomValues(seed + 9).vector(8),
-                       SemidefiniteForm::majorant, "position");
-  }
 }
 
 TEST(ModalBasis, JacobianIsWhatMovesTheNodes) {
