@@ -152,14 +152,14 @@ void write_distortion_chart(const std::filesystem::path& path, const std::vector
                             const std::string& title) {
   Chart chart;
   chart.title = title;
-  chart.x_name = "time, s";
-  chart.y_name = "|dq|, kg^(1/2) m";
-  chart.lines.push_back({"displacement", {}, {}});
-  chart.marks_name = "lost";
+  chart.x.name = "time, s";
+  chart.y.name = "|dq|, kg^(1/2) m";
+  chart.lines.push_back({.name = "displacement"});
+  chart.ticks_name = "lost";
   for (const Distortion& d : distortions) {
     chart.lines[0].x.push_back(d.time);
     chart.lines[0].y.push_back(d.displacement);
-    if (d.lost) chart.marks.push_back(d.time);
+    if (d.lost) chart.ticks.push_back(d.time);
   }
   write_chart(path, chart);
 }
