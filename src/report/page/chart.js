@@ -93,15 +93,19 @@ export function drawChart(chart) {
     element('figcaption', {}, element('a', { href: `${chart.id}.svg` }, 'SVG'), front.length > 0 ? ' · dashed: Pareto front' : '',
       every.some(({ point }) => point.status && point.status !== 'solved') ? ' · hollow: not solved' : ''));
 
-  const axis = (label) => ({
-    label, stroke: () => styleColour('faint'), grid: { stroke: () => styleColour('rule'), width: 1 }, ticks: { stroke: () => styleColour('rule'), width: 1 },
-    values: (u, ticks) => ticks.map((tick) => (tick === null ? '' : numberText(tick))), size: 56,
+  // Over several decades the lines between powers of ten would fill the page.
+  const isPower = (tick) => Math.abs(Math.log10(tick) - Math.round(Math.log10(tick))) < 1e-9;
+  const gridFilter = (log) => (u, ticks) => ticks.map((tick) => (!log || isPower(tick) ? tick : null));
+  const axis = ({ label, log }, size) => ({
+    label, size, stroke: () => styleColour('faint'), ticks: { stroke: () => styleColour('rule'), width: 1 },
+    grid: { stroke: () => styleColour('rule'), width: 1, filter: gridFilter(log) },
+    values: (u, ticks) => ticks.map((tick) => (tick === null ? '' : numberText(tick))),
   });
   const scale = (log, view) => ({ time: false, distr: log ? 3 : 1, range: () => view() });
   const options = {
     width: 560, height: 340, legend: { show: false },
     scales: { x: scale(logX, () => viewX), y: scale(logY, () => viewY) },
-    axes: [{ ...axis(chart.x.label), size: 44 }, axis(chart.y.label)],
+    axes: [axis(chart.x, 44), axis(chart.y, 60)],
     series: [{}, { show: true, points: { show: false }, stroke: 'transparent' }],
     cursor: { points: { show: false }, drag: { x: true, y: true, uni: 20, setScale: false } },
     hooks: { draw: [draw], setSelect: [zoom] },

@@ -1,7 +1,9 @@
 # The page of the HTML report: fetches what package-lock.json names into the build folder, once per lock, and bundles it.
-# Sets REPORT_PAGE to the bundled file: an empty one, with a warning, where that cannot be had (docs/decisions/0016).
+# Sets REPORT_PAGE to the bundled file, and PAGE_BUILT; an empty file and OFF, with a warning, where that cannot be had
+# (docs/decisions/0016).
 set(PAGE_SOURCES ${CMAKE_CURRENT_LIST_DIR})
 set(PAGE_FOLDER ${PROJECT_BINARY_DIR}/page)
+set(PAGE_BUILT OFF)
 set(REPORT_PAGE ${PAGE_FOLDER}/no_page.html)
 file(WRITE ${REPORT_PAGE} "")
 
@@ -39,6 +41,7 @@ if(PAGE_PROBLEM)
   return()
 endif()
 
+set(PAGE_BUILT ON)
 set(REPORT_PAGE ${PAGE_FOLDER}/page.html)
 file(GLOB PAGE_FILES CONFIGURE_DEPENDS ${PAGE_SOURCES}/*.js ${PAGE_SOURCES}/*.mjs ${PAGE_SOURCES}/*.css ${PAGE_SOURCES}/*.html)
 add_custom_command(OUTPUT ${REPORT_PAGE} COMMAND ${NODE} ${PAGE_SOURCES}/build.mjs ${REPORT_PAGE}

@@ -22,13 +22,13 @@ function addUp(values, count) {
 
 export class RunData {
   static async read(viewer) {
-    const run = new RunData();
-    Object.assign(run, viewer);
-    run.corners = await unpack(viewer.triangles);
+    const { triangles, positions, fields, ...plain } = viewer;
+    const run = Object.assign(new RunData(), plain);
+    run.corners = await unpack(triangles);
     run.triangleCount = run.corners.length / 3;
-    run.quantized = addUp(await unpack(viewer.positions), 3 * viewer.vertices);
+    run.quantized = addUp(await unpack(positions), 3 * run.vertices);
     run.fields = [];
-    for (const field of viewer.fields) {
+    for (const field of fields) {
       run.fields.push({ ...field, values: addUp(await unpack(field.values), run.triangleCount) });
     }
     return run;

@@ -7,7 +7,6 @@ import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { styleColour } from './dom.js';
 
 export class Scene3D {
-  /** Throws where the browser has no WebGL. */
   constructor(canvas, run) {
     this.run = run;
     this.renderer = new WebGLRenderer({ canvas, antialias: true });

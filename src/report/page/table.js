@@ -9,21 +9,22 @@ function compare(a, b, sign) {
   return sign * String(a).localeCompare(String(b), undefined, { numeric: true });
 }
 
-function cell(value) {
+function cell(value, isNumber) {
   if (value instanceof Node) return element('td', {}, value);
-  return element('td', typeof value === 'number' ? { class: 'number', title: value } : {}, numberText(value));
+  return element('td', isNumber ? { class: 'number', title: value } : {}, numberText(value));
 }
 
 /** `columns`: names; `rows`: lists of string, number, null, or an element (which does not sort). */
 export function sortableTable({ id, title, columns, rows }) {
   const order = rows.map((_, index) => index);
   const body = element('tbody');
-  const lines = rows.map((row) => element('tr', {}, row.map(cell)));
+  const isNumber = columns.map((_, column) => rows.some((row) => typeof row[column] === 'number'));
+  const lines = rows.map((row) => element('tr', {}, row.map((value, column) => cell(value, isNumber[column]))));
   const fill = () => body.replaceChildren(...order.map((index) => lines[index]));
   const headers = columns.map((name, column) => {
     if (!name) return element('th', { scope: 'col' }, element('span', {}, ''));
     const button = element('button', { type: 'button', click: () => sortBy(column) }, name);
-    return element('th', { scope: 'col', 'aria-sort': 'none' }, button);
+    return element('th', { scope: 'col', 'aria-sort': 'none', class: isNumber[column] && 'number' }, button);
   });
   const sortBy = (column) => {
     const up = headers[column].getAttribute('aria-sort') !== 'ascending';

@@ -9,20 +9,9 @@ const playSeconds = 4; // for all frames, but no faster than 25 a second
 
 export async function makeViewer(data) {
   const run = await RunData.read(data);
-  const section = element('div');
-  const canvas = element('canvas', {
-    tabindex: 0, role: 'img',
-    'aria-label': 'The mesh. Arrow keys turn it, plus and minus zoom, space plays, comma and full stop go from frame to frame, R resets the view.',
-  });
-  let scene = null;
-  try {
-    scene = new Scene3D(canvas, run);
-  } catch {
-    section.append(await fallback(data));
-  }
-  if (scene) section.append(...controlled(run, scene, canvas));
-  section.append(element('p', { class: 'faint' }, run.note));
-  return section;
+  const hasWebGL = document.createElement('canvas').getContext('webgl2') !== null;
+  const content = hasWebGL ? controlled(run) : [await fallback(data)];
+  return element('div', {}, content, element('p', { class: 'faint' }, run.note));
 }
 
 /** Without WebGL: the run's last picture, as it is in its folder. */
@@ -35,7 +24,12 @@ async function fallback({ picture }) {
   return element('div', { class: 'viewer' }, element('img', { src: url, alt: 'The last picture of the run' }), sentence);
 }
 
-function controlled(run, scene, canvas) {
+function controlled(run) {
+  const canvas = element('canvas', {
+    tabindex: 0, role: 'img',
+    'aria-label': 'The mesh. Arrow keys turn it, plus and minus zoom, space plays, comma and full stop go from frame to frame, R resets the view.',
+  });
+  const scene = new Scene3D(canvas, run);
   let frame = run.frames.length - 1, field = run.fields[0] ?? null, chosen = -1, timer = null;
   const readout = element('p', { class: 'readout', 'aria-live': 'polite' }, element('span', { class: 'faint' }, 'Click a triangle for its values.'));
   const legend = element('div', { 'aria-live': 'polite' });
