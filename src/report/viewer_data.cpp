@@ -64,7 +64,8 @@ Json picture_of(const fs::path& folder) {
     if (entry.path().extension() == ".svg" && (!last || entry.path() > *last)) last = entry.path();
   }
   if (!last) return nullptr;
-  return packed_text(std::as_bytes(std::span(read_bytes(*last))));
+  const std::string svg = read_bytes(*last);
+  return packed_text(std::as_bytes(std::span(svg)));
 }
 
 Json layers_of(const Model& model) {

@@ -154,7 +154,7 @@ void write_distortion_chart(const std::filesystem::path& path, const std::vector
   chart.title = title;
   chart.x.name = "time, s";
   chart.y.name = "|dq|, kg^(1/2) m";
-  chart.lines.push_back({.name = "displacement"});
+  chart.lines.emplace_back().name = "displacement";
   chart.ticks_name = "lost";
   for (const Distortion& d : distortions) {
     chart.lines[0].x.push_back(d.time);

@@ -87,7 +87,8 @@ TEST_F(HtmlReport, HoldsTheLicencesOfItsLibraries) {
 
 TEST_F(HtmlReport, EachChartAndMapHasAnSvgBesideThePage) {
   const auto files = write_html_report(path("out"), sample());
-  EXPECT_THAT(files, testing::ElementsAre(path("out") / "index.html", path("out") / "work.svg", path("out") / "map.svg"));
+  EXPECT_THAT(files,
+              testing::ElementsAre(path("out") / "index.html", path("out") / "work.svg", path("out") / "map.svg"));
   const std::string chart = read_bytes(files[1]), map = read_bytes(files[2]);
   EXPECT_EQ(count(chart, "<circle"), 3u);
   EXPECT_EQ(count(chart, "fill=\"white\" stroke"), 1u) << "the point that is not solved is hollow";
