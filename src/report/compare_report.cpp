@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "report/command_text.h"
@@ -50,8 +51,10 @@ Json accuracy_chart(const Comparison& comparison, const ProblemComparison& probl
     if (run.trials.empty()) continue;
     const EntrySummary summary = summarize(run);
     auto same = std::find_if(series.begin(), series.end(), [&](const Json& one) { return one["name"] == run.solver; });
-    if (same == series.end())
-      same = series.insert(series.end(), {{"name", run.solver}, {"line", true}, {"points", Json::array()}});
+    if (same == series.end()) {
+      series.push_back({{"name", run.solver}, {"line", true}, {"points", Json::array()}});
+      same = std::prev(series.end());
+    }
     (*same)["points"].push_back({{"x", summary.seconds.median},
                                  {"y", summary.residual},
                                  {"status", status_of(run, summary)},
