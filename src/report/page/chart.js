@@ -21,6 +21,21 @@ function rangeOf(values, log) {
   return [low - room, high + room];
 }
 
+/** Marks of a logarithmic axis: powers of ten; 1, 2 and 5 over two decades or fewer; even steps within one. */
+function logTicks(low, high) {
+  const ticks = [];
+  if (high < 10 * low) {
+    const raw = (high - low) / 5, power = 10 ** Math.floor(Math.log10(raw)), step = [1, 2, 5, 10].find((factor) => raw <= factor * power) * power;
+    for (let i = Math.ceil(low / step); i * step <= high; ++i) ticks.push(i * step);
+    return ticks;
+  }
+  const first = Math.floor(Math.log10(low)), last = Math.ceil(Math.log10(high)), every = Math.max(1, Math.ceil((last - first) / 8));
+  for (let power = first; power <= last; power += every) {
+    for (const factor of last - first <= 2 ? [1, 2, 5] : [1]) ticks.push(factor * 10 ** power);
+  }
+  return ticks.filter((tick) => tick >= low && tick <= high);
+}
+
 function describe(chart, { series, point }) {
   const y = point.y === null || point.y === undefined ? 'no value' : numberText(point.y);
   return [series.name, point.label, `${chart.x.label} ${numberText(point.x)}`, `${chart.y.label} ${y}`, point.status]
@@ -93,13 +108,11 @@ export function drawChart(chart) {
     element('figcaption', {}, element('a', { href: `${chart.id}.svg` }, 'SVG'), front.length > 0 ? ' · dashed: Pareto front' : '',
       every.some(({ point }) => point.status && point.status !== 'solved') ? ' · hollow: not solved' : ''));
 
-  // Over several decades the lines between powers of ten would fill the page.
-  const isPower = (tick) => Math.abs(Math.log10(tick) - Math.round(Math.log10(tick))) < 1e-9;
-  const gridFilter = (log) => (u, ticks) => ticks.map((tick) => (!log || isPower(tick) ? tick : null));
   const axis = ({ label, log }, size) => ({
-    label, size, stroke: () => styleColour('faint'), ticks: { stroke: () => styleColour('rule'), width: 1 },
-    grid: { stroke: () => styleColour('rule'), width: 1, filter: gridFilter(log) },
-    values: (u, ticks) => ticks.map((tick) => (tick === null ? '' : numberText(tick))),
+    label, size, stroke: () => styleColour('faint'),
+    ticks: { stroke: () => styleColour('rule'), width: 1 }, grid: { stroke: () => styleColour('rule'), width: 1 },
+    values: (u, ticks) => ticks.map(numberText),
+    ...(log && { splits: (u, index, low, high) => logTicks(low, high), filter: (u, ticks) => ticks }),
   });
   const scale = (log, view) => ({ time: false, distr: log ? 3 : 1, range: () => view() });
   const options = {

@@ -12,13 +12,13 @@ export function element(name, attributes = {}, ...children) {
   return made;
 }
 
-/** A number for a person: four digits, an exponent where it is very large or small. */
+/** A number for a person: five digits, an exponent and three where it is very large or small. */
 export function numberText(value) {
   if (value === null || value === undefined || Number.isNaN(value)) return '–';
   if (typeof value !== 'number') return String(value);
   if (Number.isInteger(value) && Math.abs(value) < 1e6) return String(value);
   const size = Math.abs(value);
-  const text = size < 1e-3 || size >= 1e6 ? value.toExponential(2).replace(/\.?0+e/, 'e') : String(Number(value.toPrecision(4)));
+  const text = size < 1e-3 || size >= 1e6 ? value.toExponential(2).replace(/\.?0+e/, 'e') : String(Number(value.toPrecision(5)));
   return text.replace('e+', 'e');
 }
 
