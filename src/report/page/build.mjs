@@ -11,8 +11,17 @@ const { build } = createRequire(join(modules, 'index.js'))('esbuild');
 
 const bundle = async (entry) => {
   const result = await build({
-    entryPoints: [join(sources, entry)], bundle: true, minify: true, write: false, charset: 'utf8', target: 'es2022',
-    format: 'iife', legalComments: 'inline', nodePaths: [modules], loader: { '.css': 'css' }, logLevel: 'warning',
+    entryPoints: [join(sources, entry)],
+    bundle: true,
+    minify: true,
+    write: false,
+    charset: 'utf8',
+    target: 'es2022',
+    format: 'iife',
+    legalComments: 'inline',
+    nodePaths: [modules],
+    loader: { '.css': 'css' },
+    logLevel: 'warning',
   });
   return result.outputFiles[0].text.trim();
 };
@@ -23,5 +32,6 @@ const style = await bundle('style.css');
 const licence = (name) => `${name}\n${readFileSync(join(modules, name, 'LICENSE'), 'utf8').trim()}`;
 const page = readFileSync(join(sources, 'index.html'), 'utf8')
   .replace('@LICENCES@', () => ['three', 'uplot'].map(licence).join('\n\n'))
-  .replace('/*@STYLE@*/', () => style).replace('/*@SCRIPT@*/', () => script);
+  .replace('/*@STYLE@*/', () => style)
+  .replace('/*@SCRIPT@*/', () => script);
 writeFileSync(process.argv[2], page);

@@ -8,14 +8,18 @@ const colours = {
   dark: ['#d58ae0', '#ff8a80', '#5cc4dd', '#f0c04a', '#93a8f0', '#bbbbbb', '#6fd39a', '#f48fc6', '#d0a67a', '#4fc3f7'],
 };
 const isDark = () => matchMedia('(prefers-color-scheme: dark)').matches;
-const colour = (index) => { const list = isDark() ? colours.dark : colours.light; return list[index % list.length]; };
+const colour = (index) => {
+  const list = isDark() ? colours.dark : colours.light;
+  return list[index % list.length];
+};
 const usable = (value, log) => Number.isFinite(value) && (!log || value > 0);
 
 /** The range of all values with some room around them. */
 function rangeOf(values, log) {
   const good = values.filter((value) => usable(value, log));
   if (good.length === 0) return log ? [0.1, 10] : [0, 1];
-  let low = Math.min(...good), high = Math.max(...good);
+  let low = Math.min(...good),
+    high = Math.max(...good);
   if (log) return low === high ? [low / 3, high * 3] : [low / (high / low) ** 0.06, high * (high / low) ** 0.06];
   const room = 0.06 * (high - low || Math.abs(high) || 1);
   return [low - room, high + room];
@@ -25,11 +29,15 @@ function rangeOf(values, log) {
 function logTicks(low, high) {
   const ticks = [];
   if (high < 10 * low) {
-    const raw = (high - low) / 5, power = 10 ** Math.floor(Math.log10(raw)), step = [1, 2, 5, 10].find((factor) => raw <= factor * power) * power;
+    const raw = (high - low) / 5,
+      power = 10 ** Math.floor(Math.log10(raw)),
+      step = [1, 2, 5, 10].find((factor) => raw <= factor * power) * power;
     for (let i = Math.ceil(low / step); i * step <= high; ++i) ticks.push(i * step);
     return ticks;
   }
-  const first = Math.floor(Math.log10(low)), last = Math.ceil(Math.log10(high)), every = Math.max(1, Math.ceil((last - first) / 8));
+  const first = Math.floor(Math.log10(low)),
+    last = Math.ceil(Math.log10(high)),
+    every = Math.max(1, Math.ceil((last - first) / 8));
   for (let power = first; power <= last; power += every) {
     for (const factor of last - first <= 2 ? [1, 2, 5] : [1]) ticks.push(factor * 10 ** power);
   }
@@ -39,19 +47,24 @@ function logTicks(low, high) {
 function describe(chart, { series, point }) {
   const y = point.y === null || point.y === undefined ? 'no value' : numberText(point.y);
   return [series.name, point.label, `${chart.x.label} ${numberText(point.x)}`, `${chart.y.label} ${y}`, point.status]
-    .filter(Boolean).join(' · ');
+    .filter(Boolean)
+    .join(' · ');
 }
 
 export function drawChart(chart) {
-  const logX = Boolean(chart.x.log), logY = Boolean(chart.y.log);
+  const logX = Boolean(chart.x.log),
+    logY = Boolean(chart.y.log);
   const shown = chart.series.map(() => true);
   const every = chart.series.flatMap((series, index) => series.points.map((point) => ({ series, index, point })));
   const front = chart.front ?? [];
   const fullX = rangeOf([...every.map(({ point }) => point.x), ...front.map(([x]) => x)], logX);
   const fullY = rangeOf([...every.map(({ point }) => point.y), ...front.map(([, y]) => y)], logY);
-  let viewX = fullX, viewY = fullY, chosen = null;
+  let viewX = fullX,
+    viewY = fullY,
+    chosen = null;
 
-  // A value that the axis cannot show stands at its edge: none or infinite at the top, zero on a logarithmic axis at the bottom.
+  // A value that the axis cannot show stands at its edge: none or infinite at the top, zero on a logarithmic axis at
+  // the bottom.
   const placeX = (u, x) => (usable(x, logX) ? u.valToPos(x, 'x', true) : u.bbox.left);
   const placeY = (u, y) => {
     if (usable(y, logY)) return u.valToPos(y, 'y', true);
@@ -59,14 +72,17 @@ export function drawChart(chart) {
   };
 
   function draw(u) {
-    const { ctx } = u, ratio = devicePixelRatio || 1;
+    const { ctx } = u,
+      ratio = devicePixelRatio || 1;
     ctx.save();
     ctx.beginPath();
     ctx.rect(u.bbox.left - 8 * ratio, u.bbox.top - 8 * ratio, u.bbox.width + 16 * ratio, u.bbox.height + 16 * ratio);
     ctx.clip();
     const path = (points) => {
       ctx.beginPath();
-      points.forEach(([x, y], i) => (i ? ctx.lineTo(placeX(u, x), placeY(u, y)) : ctx.moveTo(placeX(u, x), placeY(u, y))));
+      points.forEach(([x, y], i) =>
+        i ? ctx.lineTo(placeX(u, x), placeY(u, y)) : ctx.moveTo(placeX(u, x), placeY(u, y)),
+      );
       ctx.stroke();
     };
     if (front.length > 0) {
@@ -101,22 +117,52 @@ export function drawChart(chart) {
     figure.dataset.points = drawn;
   }
 
-  const holder = element('div', { class: 'plot', tabindex: 0, role: 'group', 'aria-label': `${chart.title}: arrow keys go from point to point` });
-  const readout = element('div', { class: 'readout', 'aria-live': 'polite' }, element('span', { class: 'faint' }, 'Point at a mark, or use the arrow keys. Drag to zoom, double-click to see all.'));
+  const holder = element('div', {
+    class: 'plot',
+    tabindex: 0,
+    role: 'group',
+    'aria-label': `${chart.title}: arrow keys go from point to point`,
+  });
+  const readout = element(
+    'div',
+    { class: 'readout', 'aria-live': 'polite' },
+    element(
+      'span',
+      { class: 'faint' },
+      'Point at a mark, or use the arrow keys. Drag to zoom, double-click to see all.',
+    ),
+  );
   const legend = element('div', { class: 'legend' });
-  const figure = element('figure', { id: `chart-${chart.id}` }, element('h3', {}, chart.title), legend, holder, readout,
-    element('figcaption', {}, element('a', { href: `${chart.id}.svg` }, 'SVG'), front.length > 0 ? ' · dashed: Pareto front' : '',
-      every.some(({ point }) => point.status && point.status !== 'solved') ? ' · hollow: not solved' : ''));
+  const figure = element(
+    'figure',
+    { id: `chart-${chart.id}` },
+    element('h3', {}, chart.title),
+    legend,
+    holder,
+    readout,
+    element(
+      'figcaption',
+      {},
+      element('a', { href: `${chart.id}.svg` }, 'SVG'),
+      front.length > 0 ? ' · dashed: Pareto front' : '',
+      every.some(({ point }) => point.status && point.status !== 'solved') ? ' · hollow: not solved' : '',
+    ),
+  );
 
   const axis = ({ label, log }, size) => ({
-    label, size, stroke: () => styleColour('faint'),
-    ticks: { stroke: () => styleColour('rule'), width: 1 }, grid: { stroke: () => styleColour('rule'), width: 1 },
+    label,
+    size,
+    stroke: () => styleColour('faint'),
+    ticks: { stroke: () => styleColour('rule'), width: 1 },
+    grid: { stroke: () => styleColour('rule'), width: 1 },
     values: (u, ticks) => ticks.map(numberText),
     ...(log && { splits: (u, index, low, high) => logTicks(low, high), filter: (u, ticks) => ticks }),
   });
   const scale = (log, view) => ({ time: false, distr: log ? 3 : 1, range: () => view() });
   const options = {
-    width: 560, height: 340, legend: { show: false },
+    width: 560,
+    height: 340,
+    legend: { show: false },
     scales: { x: scale(logX, () => viewX), y: scale(logY, () => viewY) },
     axes: [axis(chart.x, 44), axis(chart.y, 60)],
     series: [{}, { show: true, points: { show: false }, stroke: 'transparent' }],
@@ -135,19 +181,29 @@ export function drawChart(chart) {
     u.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
     redraw();
   }
-  plot.over.addEventListener('dblclick', () => { viewX = fullX; viewY = fullY; redraw(); });
+  plot.over.addEventListener('dblclick', () => {
+    viewX = fullX;
+    viewY = fullY;
+    redraw();
+  });
 
   const visible = () => every.filter(({ index }) => shown[index]);
   function choose(entry) {
     if (!entry || entry === chosen) return;
     chosen = entry;
-    readout.replaceChildren(element('span', {}, describe(chart, entry)), ...(entry.point.command ? [commandBlock(entry.point.command)] : []));
+    readout.replaceChildren(
+      element('span', {}, describe(chart, entry)),
+      ...(entry.point.command ? [commandBlock(entry.point.command)] : []),
+    );
     plot.redraw(false);
   }
   plot.over.addEventListener('mousemove', (event) => {
-    const ratio = devicePixelRatio || 1, box = plot.over.getBoundingClientRect();
-    const x = (event.clientX - box.left) * ratio + plot.bbox.left, y = (event.clientY - box.top) * ratio + plot.bbox.top;
-    let nearest = null, least = (20 * ratio) ** 2;
+    const ratio = devicePixelRatio || 1,
+      box = plot.over.getBoundingClientRect();
+    const x = (event.clientX - box.left) * ratio + plot.bbox.left,
+      y = (event.clientY - box.top) * ratio + plot.bbox.top;
+    let nearest = null,
+      least = (20 * ratio) ** 2;
     for (const entry of visible()) {
       const distance = (placeX(plot, entry.point.x) - x) ** 2 + (placeY(plot, entry.point.y) - y) ** 2;
       if (distance < least) [nearest, least] = [entry, distance];
@@ -165,7 +221,9 @@ export function drawChart(chart) {
 
   chart.series.forEach((series, index) => {
     const swatch = element('span', { class: 'swatch' });
-    const paint = () => { swatch.style.background = colour(index); };
+    const paint = () => {
+      swatch.style.background = colour(index);
+    };
     const toggle = () => {
       shown[index] = !shown[index];
       button.setAttribute('aria-pressed', shown[index]);

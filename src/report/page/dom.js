@@ -18,7 +18,8 @@ export function numberText(value) {
   if (typeof value !== 'number') return String(value);
   if (Number.isInteger(value) && Math.abs(value) < 1e6) return String(value);
   const size = Math.abs(value);
-  const text = size < 1e-3 || size >= 1e6 ? value.toExponential(2).replace(/\.?0+e/, 'e') : String(Number(value.toPrecision(5)));
+  const text =
+    size < 1e-3 || size >= 1e6 ? value.toExponential(2).replace(/\.?0+e/, 'e') : String(Number(value.toPrecision(5)));
   return text.replace('e+', 'e');
 }
 
@@ -29,7 +30,8 @@ export function commandBlock(command) {
     try {
       await navigator.clipboard.writeText(command);
       button.textContent = 'Copied';
-    } catch { // the browser forbids it to some pages from a file
+    } catch {
+      // the browser forbids it to some pages from a file
       getSelection().selectAllChildren(text);
       button.textContent = 'Selected: copy with Ctrl+C';
     }
@@ -42,4 +44,5 @@ export function commandBlock(command) {
 export const styleColour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 
 /** Calls back whenever the system changes between light and dark. */
-export const onColourScheme = (callback) => matchMedia('(prefers-color-scheme: dark)').addEventListener('change', callback);
+export const onColourScheme = (callback) =>
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', callback);

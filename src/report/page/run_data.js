@@ -4,7 +4,8 @@ const kinds = { uint8: Uint8Array, uint16: Uint16Array, uint32: Uint32Array };
 const none = 65535; // a field's value that is not a number
 
 async function bytesOf(text) {
-  const binary = atob(text), packed = new Uint8Array(binary.length);
+  const binary = atob(text),
+    packed = new Uint8Array(binary.length);
   for (let i = 0; i < binary.length; ++i) packed[i] = binary.charCodeAt(i);
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate'));
   return new Response(stream).arrayBuffer();
@@ -36,10 +37,12 @@ export class RunData {
 
   /** Coordinates of the vertices in a frame, m. */
   positions(frame) {
-    const { low, high } = this.box, start = frame * 3 * this.vertices, at = new Float32Array(3 * this.vertices);
+    const { low, high } = this.box,
+      start = frame * 3 * this.vertices,
+      at = new Float32Array(3 * this.vertices);
     for (let i = 0; i < at.length; ++i) {
       const axis = i % 3;
-      at[i] = low[axis] + (high[axis] - low[axis]) * this.quantized[start + i] / 65535;
+      at[i] = low[axis] + ((high[axis] - low[axis]) * this.quantized[start + i]) / 65535;
     }
     return at;
   }
@@ -47,7 +50,7 @@ export class RunData {
   /** The value of a triangle, NaN where there is none. */
   value(field, frame, triangle) {
     const stored = field.values[frame * this.triangleCount + triangle];
-    return stored === none ? NaN : field.least + (field.most - field.least) * stored / (none - 1);
+    return stored === none ? NaN : field.least + ((field.most - field.least) * stored) / (none - 1);
   }
 
   layerOf(triangle) {

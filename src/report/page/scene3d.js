@@ -1,7 +1,26 @@
 // The mesh in three.js: one triangle one colour, drawn only when something has changed.
 import {
-  AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial,
-  MeshBasicMaterial, PerspectiveCamera, Points, PointsMaterial, Raycaster, Scene, SphereGeometry, SRGBColorSpace, Vector2, Vector3, WebGLRenderer,
+  AmbientLight,
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  DirectionalLight,
+  DoubleSide,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  MeshLambertMaterial,
+  MeshBasicMaterial,
+  PerspectiveCamera,
+  Points,
+  PointsMaterial,
+  Raycaster,
+  Scene,
+  SphereGeometry,
+  SRGBColorSpace,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { styleColour } from './dom.js';
@@ -30,14 +49,29 @@ export class Scene3D {
     this.smooth.setIndex(new BufferAttribute(this.run.corners, 1));
     this.smooth.setAttribute('position', new BufferAttribute(new Float32Array(3 * this.run.vertices), 3));
     this.geometry = new BufferGeometry();
-    for (const name of ['position', 'normal', 'color']) this.geometry.setAttribute(name, new BufferAttribute(new Float32Array(3 * corners), 3));
-    this.cloth = new Mesh(this.geometry, new MeshLambertMaterial({ vertexColors: true, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }));
+    for (const name of ['position', 'normal', 'color'])
+      this.geometry.setAttribute(name, new BufferAttribute(new Float32Array(3 * corners), 3));
+    this.cloth = new Mesh(
+      this.geometry,
+      new MeshLambertMaterial({
+        vertexColors: true,
+        side: DoubleSide,
+        polygonOffset: true,
+        polygonOffsetFactor: 1,
+        polygonOffsetUnits: 1,
+      }),
+    );
     this.cloth.frustumCulled = false;
 
     const edges = new Map();
     const { corners: c } = this.run;
     for (let i = 0; i < c.length; i += 3) {
-      for (const [a, b] of [[c[i], c[i + 1]], [c[i + 1], c[i + 2]], [c[i + 2], c[i]]]) edges.set(a < b ? a * this.run.vertices + b : b * this.run.vertices + a, [a, b]);
+      for (const [a, b] of [
+        [c[i], c[i + 1]],
+        [c[i + 1], c[i + 2]],
+        [c[i + 2], c[i]],
+      ])
+        edges.set(a < b ? a * this.run.vertices + b : b * this.run.vertices + a, [a, b]);
     }
     const wires = new BufferGeometry();
     wires.setAttribute('position', this.smooth.getAttribute('position'));
@@ -46,14 +80,20 @@ export class Scene3D {
     this.edges.visible = this.run.triangleCount <= 4000;
     this.edges.frustumCulled = false;
 
-    this.highlight = new Mesh(new BufferGeometry(), new MeshBasicMaterial({ color: 0x00c2ff, side: DoubleSide, depthTest: false, transparent: true, opacity: 0.9 }));
+    this.highlight = new Mesh(
+      new BufferGeometry(),
+      new MeshBasicMaterial({ color: 0x00c2ff, side: DoubleSide, depthTest: false, transparent: true, opacity: 0.9 }),
+    );
     this.highlight.frustumCulled = false;
     this.highlight.renderOrder = 2;
     this.scene.add(this.cloth, this.edges, this.highlight);
   }
 
   addSurroundings() {
-    this.spheres = this.run.spheres.map(({ radius }) => new Mesh(new SphereGeometry(radius * 0.995, 48, 32), new MeshLambertMaterial({ color: 0x9aa5b4 })));
+    this.spheres = this.run.spheres.map(
+      ({ radius }) =>
+        new Mesh(new SphereGeometry(radius * 0.995, 48, 32), new MeshLambertMaterial({ color: 0x9aa5b4 })),
+    );
     const pins = new BufferGeometry();
     pins.setAttribute('position', new BufferAttribute(new Float32Array(3 * this.run.pins.length), 3));
     this.pins = new Points(pins, new PointsMaterial({ color: 0x00a06a, size: 7, sizeAttenuation: false }));
@@ -63,12 +103,14 @@ export class Scene3D {
 
   showFrame(frame) {
     this.frame = frame;
-    const at = this.run.positions(frame), smooth = this.smooth.getAttribute('position');
+    const at = this.run.positions(frame),
+      smooth = this.smooth.getAttribute('position');
     smooth.array.set(at);
     smooth.needsUpdate = true;
     this.smooth.computeVertexNormals();
     const normals = this.smooth.getAttribute('normal').array;
-    const position = this.geometry.getAttribute('position'), normal = this.geometry.getAttribute('normal');
+    const position = this.geometry.getAttribute('position'),
+      normal = this.geometry.getAttribute('normal');
     this.run.corners.forEach((vertex, i) => {
       for (let axis = 0; axis < 3; ++axis) {
         position.array[3 * i + axis] = at[3 * vertex + axis];
@@ -85,7 +127,8 @@ export class Scene3D {
 
   /** `colourOf(triangle)`: red, green and blue from 0 to 255. */
   paint(colourOf) {
-    const color = this.geometry.getAttribute('color'), made = new Color();
+    const color = this.geometry.getAttribute('color'),
+      made = new Color();
     for (let triangle = 0; triangle < this.run.triangleCount; ++triangle) {
       const [red, green, blue] = colourOf(triangle);
       made.setRGB(red / 255, green / 255, blue / 255, SRGBColorSpace);
@@ -98,7 +141,9 @@ export class Scene3D {
   mark(triangles) {
     this.marked = triangles;
     const position = this.geometry.getAttribute('position').array;
-    const made = Float32Array.from(triangles.flatMap((triangle) => [...position.subarray(9 * triangle, 9 * triangle + 9)]));
+    const made = Float32Array.from(
+      triangles.flatMap((triangle) => [...position.subarray(9 * triangle, 9 * triangle + 9)]),
+    );
     this.highlight.geometry.dispose();
     this.highlight.geometry = new BufferGeometry().setAttribute('position', new BufferAttribute(made, 3));
   }
@@ -107,7 +152,9 @@ export class Scene3D {
   lookAtMarked() {
     this.highlight.geometry.computeBoundingSphere();
     const { center, radius } = this.highlight.geometry.boundingSphere;
-    const back = new Vector3().subVectors(this.camera.position, this.controls.target).setLength(Math.max(16 * radius, 0.15 * this.size));
+    const back = new Vector3()
+      .subVectors(this.camera.position, this.controls.target)
+      .setLength(Math.max(16 * radius, 0.15 * this.size));
     this.controls.target.copy(center);
     this.camera.position.addVectors(center, back);
     this.controls.update();
@@ -116,7 +163,8 @@ export class Scene3D {
 
   resetView() {
     const { low, high } = this.run.box;
-    const a = new Vector3(...low), b = new Vector3(...high);
+    const a = new Vector3(...low),
+      b = new Vector3(...high);
     for (const { centers, radius } of this.run.spheres) {
       a.min(new Vector3(...centers[0]).subScalar(radius));
       b.max(new Vector3(...centers[0]).addScalar(radius));
@@ -125,7 +173,9 @@ export class Scene3D {
     this.controls.target.addVectors(a, b).multiplyScalar(0.5);
     this.camera.near = this.size / 500;
     this.camera.far = this.size * 20;
-    this.camera.position.copy(this.controls.target).addScaledVector(new Vector3(...this.run.view).normalize(), 1.7 * this.size);
+    this.camera.position
+      .copy(this.controls.target)
+      .addScaledVector(new Vector3(...this.run.view).normalize(), 1.7 * this.size);
     this.camera.updateProjectionMatrix();
     this.controls.update();
     this.draw();
@@ -133,7 +183,8 @@ export class Scene3D {
 
   /** Turns the camera about its target, radians; `zoom` multiplies its distance. */
   turn(sideways, upwards, zoom = 1) {
-    const up = this.camera.up.clone().normalize(), offset = new Vector3().subVectors(this.camera.position, this.controls.target);
+    const up = this.camera.up.clone().normalize(),
+      offset = new Vector3().subVectors(this.camera.position, this.controls.target);
     offset.applyAxisAngle(up, sideways);
     const side = new Vector3().crossVectors(up, offset).normalize();
     const tilted = offset.clone().applyAxisAngle(side, upwards);
@@ -147,13 +198,14 @@ export class Scene3D {
   pick(x, y) {
     const { clientWidth, clientHeight } = this.renderer.domElement;
     const caster = new Raycaster();
-    caster.setFromCamera(new Vector2(2 * x / clientWidth - 1, 1 - 2 * y / clientHeight), this.camera);
+    caster.setFromCamera(new Vector2((2 * x) / clientWidth - 1, 1 - (2 * y) / clientHeight), this.camera);
     this.geometry.computeBoundingSphere();
     return caster.intersectObject(this.cloth)[0]?.faceIndex ?? -1;
   }
 
   draw() {
-    const canvas = this.renderer.domElement, { clientWidth: width, clientHeight: height } = canvas;
+    const canvas = this.renderer.domElement,
+      { clientWidth: width, clientHeight: height } = canvas;
     if (width === 0 || height === 0) return;
     const ratio = this.renderer.getPixelRatio();
     if (canvas.width !== Math.floor(width * ratio) || canvas.height !== Math.floor(height * ratio)) {
@@ -162,7 +214,9 @@ export class Scene3D {
       this.camera.updateProjectionMatrix();
     }
     this.scene.background = new Color(styleColour('sky'));
-    this.light.position.copy(this.camera.position).add(new Vector3().setFromMatrixColumn(this.camera.matrix, 1).multiplyScalar(0.6 * this.size));
+    this.light.position
+      .copy(this.camera.position)
+      .add(new Vector3().setFromMatrixColumn(this.camera.matrix, 1).multiplyScalar(0.6 * this.size));
     this.renderer.render(this.scene, this.camera);
   }
 }

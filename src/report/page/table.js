@@ -19,7 +19,13 @@ export function sortableTable({ id, title, columns, rows }) {
   const order = rows.map((_, index) => index);
   const body = element('tbody');
   const isNumber = columns.map((_, column) => rows.some((row) => typeof row[column] === 'number'));
-  const lines = rows.map((row) => element('tr', {}, row.map((value, column) => cell(value, isNumber[column]))));
+  const lines = rows.map((row) =>
+    element(
+      'tr',
+      {},
+      row.map((value, column) => cell(value, isNumber[column])),
+    ),
+  );
   const fill = () => body.replaceChildren(...order.map((index) => lines[index]));
   const headers = columns.map((name, column) => {
     if (!name) return element('th', { scope: 'col' }, element('span', {}, ''));
@@ -34,7 +40,17 @@ export function sortableTable({ id, title, columns, rows }) {
     fill();
   };
   fill();
-  const table = element('table', {}, element('caption', {}, title), element('thead', {}, element('tr', {}, headers)), body);
+  const table = element(
+    'table',
+    {},
+    element('caption', {}, title),
+    element('thead', {}, element('tr', {}, headers)),
+    body,
+  );
   // A region that scrolls must be reachable by keyboard.
-  return element('div', { class: 'scroll', id: `table-${id}`, tabindex: 0, role: 'region', 'aria-label': title }, table);
+  return element(
+    'div',
+    { class: 'scroll', id: `table-${id}`, tabindex: 0, role: 'region', 'aria-label': title },
+    table,
+  );
 }
