@@ -101,6 +101,8 @@ def check_words(words):
     else:
         text, subcommand = help_of(str(PROGRAM), "--help"), None
         rest = words[1:]
+        if rest and rest[0].endswith(".nl"):  # as AMPL calls a solver: no command, no option with dashes
+            return None if (ROOT / rest[0]).is_file() else f"{rest[0]} is not there"
         if rest and not rest[0].startswith("-"):
             subcommand, rest = rest[0], rest[1:]
             # A help that does not fail shows that the name is accepted, one that mentions it that it is not an argument.

@@ -101,6 +101,8 @@ AugmentedLagrangianOptions augmented_lagrangian_options(const Scene& scene, int 
   options.equalities = scene.solver.equalities;
   options.null_space = scene.solver.method == scene::SolverMethod::null_space;
   options.inner_tolerance_factor = scene.solver.inner_tolerance_factor;
+  if (scene.solver.longest_step > 0)
+    options.newton.longest_step = options.central_path.longest_step = scene.solver.longest_step;
   options.max_outer = scene.solver.max_outer;
   options.max_newton = scene.solver.max_newton;
   options.threads = threads;

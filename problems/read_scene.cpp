@@ -88,19 +88,28 @@ void apply(Document& document, const std::string& key, const std::string& value,
   (*parent)[key.substr(begin)] = value_of(value);
 }
 
+std::string with_overrides(std::string source, const Overrides& overrides) {
+  for (const auto& [key, value] : overrides) source += " --set " + key + "=" + value;
+  return source;
+}
+
+void check_readable(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) throw InputError(file.string() + ": no such file");
+  if (!std::ifstream(file)) throw InputError(file.string() + ": cannot be read");
+}
+
 }  // namespace
 
 Scene read_scene(const std::filesystem::path& file, const Overrides& overrides) {
   std::string source = file.string();
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) throw InputError(source + ": no such file");
-  if (!std::ifstream(file)) throw InputError(source + ": cannot be read");
+  check_readable(file);
   const Document schema = Document::parse(problem_schema());
 
   Document document = parse_strict(file_bytes(file), source);
   complete(document, schema, source);
   if (!overrides.empty()) {
-    for (const auto& [key, value] : overrides) source += " --set " + key + "=" + value;
+    source = with_overrides(source, overrides);
     for (const auto& [key, value] : overrides) apply(document, key, value, source);
     complete(document, schema, source);
   }
@@ -111,6 +120,28 @@ Scene read_scene(const std::filesystem::path& file, const Overrides& overrides) 
                      [&folder](const std::string& name) { return std::filesystem::absolute(folder / name).string(); });
   scene.document = sorted.dump(2, ' ', false, Sorted::error_handler_t::replace);
   scene.hash = hash_of(std::move(sorted));
+  return scene;
+}
+
+Scene read_model_settings(const std::filesystem::path& model, const Overrides& overrides) {
+  check_readable(model);
+  const std::string source = with_overrides(model.string(), overrides);
+  const Document whole = Document::parse(problem_schema());
+  const Document schema = {{"type", "object"},
+                           {"additionalProperties", false},
+                           {"properties", {{"solver", whole["properties"]["solver"]}}},
+                           {"definitions", whole["definitions"]}};
+  Document document = {{"solver", {{"longest_step", 10}, {"starts", 8}}}};
+  complete(document, schema, source);
+  for (const auto& [key, value] : overrides) apply(document, key, value, source);
+  complete(document, schema, source);
+  Scene scene;
+  scene.name = model.stem().string();
+  scene.source = source;
+  scene.time.steps = 1;
+  scene.solver = solver_from_json(Sorted(document["solver"]));
+  scene.document = document.dump(2, ' ', false, Document::error_handler_t::replace);
+  scene.hash = fnv1a(fnv1a(file_bytes(model)) + Sorted(document).dump());
   return scene;
 }
 

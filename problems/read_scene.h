@@ -21,4 +21,9 @@ using Overrides = std::vector<std::pair<std::string, std::string>>;
 /// of numbers, or paths.
 Scene read_scene(const std::filesystem::path& file, const Overrides& overrides = {});
 
+/// What a model file (nl_model.h), which has no scene, is solved with: a Scene without bodies that has a name, a source
+/// and `solver`, the only section that can be overridden. The hash is that of the file's bytes and the settings. Throws
+/// InputError as above.
+Scene read_model_settings(const std::filesystem::path& model, const Overrides& overrides = {});
+
 }  // namespace taut

@@ -180,6 +180,7 @@ void Alternating::rounds(const Problem& problem, const Budget& budget, Result& r
     const Status status = work.following_half->solve(work.equalities, result, budget, force);
     work.equalities.put(force, constraints, result.multipliers);
     ++result.counts.outer;
+    if (observer) observer({result.x, result.multipliers, 0, result.counts});
     const Residuals judged = residuals(problem, result);
     const auto finish = [&](Status ended, const char* message) {
       result.status = ended;

@@ -92,6 +92,7 @@ struct AugmentedLagrangian::Run {
   const AugmentedLagrangianOptions& options;
   const Problem& problem;
   const Budget& budget;
+  const std::function<void(const Iterate&)>& observer;
   Workspace& work;
   Newton newton;
   Result result;     // what is being improved
@@ -100,18 +101,23 @@ struct AugmentedLagrangian::Run {
   std::vector<double> last_violation;
   Vector scratch;
 
-  Run(const AugmentedLagrangianOptions& o, const Problem& p, const Budget& b, Workspace& w)
+  Run(const AugmentedLagrangianOptions& o, const Problem& p, const Budget& b,
+      const std::function<void(const Iterate&)>& f, Workspace& w)
       : options(o),
         problem(p),
         budget(b),
+        observer(f),
         work(w),
         newton(w.assembly, *w.system, w.equalities, p.fixed_variables, p.node_size, o.newton) {}
 
   void start(const WarmStart& warm);
   double automatic_penalty(const Constraint& constraint) const;
+  void show(const Vector& x, const Vector& equal) const;
   Status inner(NewtonState& state);
+  bool diverges(const Vector& x) const;
   void update(const NewtonState& state);
   bool update_penalties();
+  bool penalise(double growth, double tolerance, NewtonState& state);
   bool closest_compromise(NewtonState& state);
   bool central_path();
   void loop();
@@ -183,6 +189,24 @@ void AugmentedLagrangian::Run::start(const WarmStart& warm) {
   }
 }
 
+/// True where x is so far away that the subproblem has no minimum to be found.
+bool AugmentedLagrangian::Run::diverges(const Vector& x) const {
+  return x.lpNorm<Eigen::Infinity>() > 1e10 * std::max(1.0, problem.initial_guess.lpNorm<Eigen::Infinity>());
+}
+
+/// Shows the observer a point with the multipliers that an update there would give. `equal` are those of the linear
+/// equalities.
+void AugmentedLagrangian::Run::show(const Vector& x, const Vector& equal) const {
+  std::vector<Vector> multipliers(result.multipliers.size());
+  double penalty = 0;
+  for (std::size_t k = 0; k < work.slacks.size(); ++k) {
+    work.slacks[k].updated_multipliers(x, std::numeric_limits<double>::infinity(), multipliers[k]);
+    penalty = std::max(penalty, work.slacks[k].penalty());
+  }
+  work.equalities.put(equal, work.slacks.size(), multipliers);
+  observer({x, multipliers, penalty, result.counts});
+}
+
 /// Minimises over x until its residual is small against the force that the multiplier update would change.
 Status AugmentedLagrangian::Run::inner(NewtonState& state) {
   double smallest = 0.5 * options.tolerances.stationarity * judged.force_scale;
@@ -190,6 +214,7 @@ Status AugmentedLagrangian::Run::inner(NewtonState& state) {
   return newton.minimise(
       state,
       [&](const NewtonState& now) {
+        if (observer) show(now.x, now.multipliers);
         // Without constraints nothing else looks at the forces again, which may be much larger than at the start: thin
         // shells would be asked for a balance below their round-off.
         if (work.slacks.empty() && ++seen % 8 == 0) {
@@ -198,7 +223,7 @@ Status AugmentedLagrangian::Run::inner(NewtonState& state) {
           judged = residuals(problem, result);
           smallest = 0.5 * options.tolerances.stationarity * judged.force_scale;
         }
-        if (now.nodal_norm <= smallest) return true;
+        if (now.nodal_norm <= smallest || diverges(now.x)) return true;
         if (result.counts.linear_solves >= options.max_newton) return true;
         scratch.setZero(problem.size());
         for (const EliminatedSlack& slack : work.slacks) slack.add_update_force(now.x, scratch);
@@ -252,12 +277,12 @@ double AugmentedLagrangian::Run::merit(const Residuals& r) const {
       {r.stationarity / t.stationarity, r.feasibility / t.feasibility, r.complementarity / t.complementarity});
 }
 
-/// Minimises the violation, with the energies as a weak tie-breaker, from state.x; true where that leaves it violated
-/// and stationary.
-bool AugmentedLagrangian::Run::closest_compromise(NewtonState& state) {
+/// Minimises the energies and a penalty on the violation, `growth` times that of the start, from state.x; until
+/// forces balance to `tolerance`; the slacks get the multipliers that belong to it. False where that fails by far.
+bool AugmentedLagrangian::Run::penalise(double growth, double tolerance, NewtonState& state) {
   for (std::size_t k = 0; k < work.slacks.size(); ++k) {
     work.slacks[k].set_multipliers(Vector::Zero(work.slacks[k].multipliers().size()));
-    work.slacks[k].set_penalty(1e3 * start_penalty[k]);
+    work.slacks[k].set_penalty(growth * start_penalty[k]);
   }
   double scale = 0;
   newton.minimise(
@@ -272,7 +297,7 @@ bool AugmentedLagrangian::Run::closest_compromise(NewtonState& state) {
         }
         work.equalities.put(now.multipliers, work.slacks.size(), probe.multipliers);
         scale = residuals(problem, probe).force_scale;
-        return now.nodal_norm <= 1e-4 * scale || result.counts.linear_solves >= options.max_newton;
+        return now.nodal_norm <= tolerance * scale || result.counts.linear_solves >= options.max_newton;
       },
       budget, result.counts, result.timings);
   for (EliminatedSlack& slack : work.slacks) {
@@ -280,7 +305,28 @@ bool AugmentedLagrangian::Run::closest_compromise(NewtonState& state) {
     slack.updated_multipliers(state.x, std::numeric_limits<double>::infinity(), stiff);
     slack.set_multipliers(stiff);
   }
-  return state.nodal_norm <= 1e-3 * scale;
+  return state.nodal_norm <= 10 * tolerance * scale;
+}
+
+/// Minimises the violation from state.x, with the energies as a weak tie-breaker; true where that leaves it violated
+/// and stationary: the residuals are then those of the compromise, in `judged`.
+///
+/// A penalty finite as it is, the energies violate feasible constraints, too, by lambda / mu. So a second one, a
+/// hundred times as large, has to leave the violation c as it is. Forces balance at both, mu J^T c = -grad f, and grad
+/// f is bounded, so that |J^T c| has fallen to a hundredth while |c| has not.
+bool AugmentedLagrangian::Run::closest_compromise(NewtonState& state) {
+  const auto violation = [&] {
+    result.x = state.x;
+    work.equalities.put(state.multipliers, work.slacks.size(), result.multipliers);
+    judged = residuals(problem, result);
+    return judged.feasibility;
+  };
+  if (!penalise(1e3, 1e-4, state)) return false;
+  const double first = violation();
+  if (first <= options.tolerances.feasibility) return false;
+  const bool balanced = penalise(1e5, 1e-6, state);
+  const double second = violation();
+  return balanced && second > 0.5 * first && second > options.tolerances.feasibility;
 }
 
 /// Tries the central path from the warm start; on success `result` and `judged` hold the solution, else the warm start
@@ -309,7 +355,8 @@ bool AugmentedLagrangian::Run::central_path() {
         judged = judge(result.multipliers);
         return merit(judged);
       },
-      budget, result.counts, result.timings);
+      observer ? [&](const Vector& now) { show(now, equal); } : std::function<void(const Vector&)>(), budget,
+      result.counts, result.timings);
   for (std::size_t k = 0; k < work.slacks.size(); ++k) work.slacks[k].set_penalty(start_penalty[k]);
   if (solved) return true;
   result.x = start.x;
@@ -333,7 +380,7 @@ void AugmentedLagrangian::Run::loop() {
   Residuals best_judged = judged;
   best_judged.finite = false;
   double first_violation = -1;
-  int stalls = 0, without_progress = 0;
+  int stalls = 0, without_progress = 0, failures = 0;
 
   const auto finish = [&](Status status, std::string message) {
     if (status != Status::solved && status != Status::infeasible && merit(best_judged) < merit(judged)) {
@@ -347,8 +394,25 @@ void AugmentedLagrangian::Run::loop() {
 
   while (true) {
     const Status inner_status = inner(state);
-    if (inner_status == Status::not_finite)
-      return finish(inner_status, "a value, a force or a Newton step is not finite");
+    if (inner_status == Status::not_finite || diverges(state.x)) {
+      if (++failures <= 3 && options.fixed_penalty == 0 && !work.slacks.empty()) {
+        // A subproblem without a minimum says nothing about the multipliers; a larger penalty may give it one.
+        for (std::size_t k = 0; k < work.slacks.size(); ++k) {
+          start_penalty[k] *= 1e3;
+          work.slacks[k].set_penalty(start_penalty[k]);
+        }
+        state.x = result.x;
+        state.multipliers = work.equalities.stacked(result.multipliers, work.slacks.size());
+        continue;
+      }
+      if (inner_status == Status::not_finite)
+        return finish(inner_status, "a value, a force or a Newton step is not finite");
+      update(state);
+      const double distance = std::max(1.0, state.x.lpNorm<Eigen::Infinity>());
+      if (judged.feasibility <= options.tolerances.feasibility * distance)
+        return finish(Status::unbounded, "the objective falls without end while the constraints hold");
+      return finish(Status::stalled, "the iterates leave every bound without meeting the constraints");
+    }
     update(state);
     if (merit(judged) < merit(best_judged)) {
       best.x = result.x;
@@ -370,27 +434,24 @@ void AugmentedLagrangian::Run::loop() {
     const bool room = update_penalties();
     // A penalty fixed too low looks the same as an infeasible problem.
     if (options.fixed_penalty == 0 && (!room || without_progress >= 4)) {
-      const std::vector<Vector> bounded = best.multipliers;
-      if (closest_compromise(state)) {
-        result.x = state.x;
-        result.multipliers = bounded;
+      std::vector<double> grown;
+      for (const EliminatedSlack& slack : work.slacks) grown.push_back(slack.penalty());
+      const bool compromise = closest_compromise(state);
+      // A point that was much closer tells that there is more to gain.
+      const bool closest = best_judged.feasibility > 0.5 * judged.feasibility;
+      if (compromise && closest) {
+        result.multipliers = best.multipliers;
         work.equalities.put(state.multipliers, work.slacks.size(), result.multipliers);
         judged = residuals(problem, result);
-        // With a finite penalty the energies violate feasible constraints a little, too: a point that was much closer
-        // tells that there is more to gain.
-        const bool closest = best_judged.feasibility > 0.5 * judged.feasibility;
-        if (judged.feasibility > options.tolerances.feasibility && closest) {
-          return finish(Status::infeasible,
-                        "no nearby point satisfies the constraints; this is the closest compromise");
-        }
-        if (!closest) {
-          state.x = best.x;
-          state.multipliers = work.equalities.stacked(best.multipliers, work.slacks.size());
-          for (std::size_t k = 0; k < work.slacks.size(); ++k) {
-            work.slacks[k].set_multipliers(bounded[k]);
-            work.slacks[k].set_penalty(start_penalty[k]);
-          }
-        }
+        return finish(Status::infeasible, "no nearby point satisfies the constraints; this is the closest compromise");
+      }
+      for (std::size_t k = 0; k < work.slacks.size(); ++k) {
+        if (!closest) work.slacks[k].set_multipliers(best.multipliers[k]);
+        work.slacks[k].set_penalty(closest ? grown[k] : start_penalty[k]);
+      }
+      if (!closest) {
+        state.x = best.x;
+        state.multipliers = work.equalities.stacked(best.multipliers, work.slacks.size());
       }
       if (!room) return finish(Status::stalled, "penalty at its limit");
       without_progress = 0;
@@ -425,15 +486,20 @@ Result AugmentedLagrangian::solve(const Problem& problem, const WarmStart& warm,
                                                options_.equalities, options_.threads);
       analysed = true;
     }
-    Run run(options_, problem, budget, *workspace_);
+    const Index pivoted = workspace_->system->pivoted();
+    Run run(options_, problem, budget, observer, *workspace_);
     run.start(warm);
     run.loop();
     result = std::move(run.result);
+    if (analysed) ++result.counts.symbolic_analyses;
+    result.counts.pivoted_factorizations = workspace_->system->pivoted() - pivoted;
+    if (pivoted == 0 && result.counts.pivoted_factorizations > 0) ++result.counts.symbolic_analyses;
     result.force_scale = run.judged.force_scale;
   }
   result.timings.total = total;
   result.timings.analysis = analysis;
-  result.counts.symbolic_analyses = analysed ? 1 : 0;
+  if (const auto factorizations = static_cast<double>(result.counts.factorizations); factorizations > 0)
+    result.counts.factor_flops = factorizations * size().factor_flops;
   result.counts.matrix_allocations = analysed ? 1 : 0;
   return result;
 }

@@ -96,7 +96,8 @@ class CentralPath {
   /// neither is.
   void advance(Vector& x, double last_width) {
     const double before = merit_;
-    double fraction = std::min(1.0, 0.9 * assembly_.largest_step(x, step_));
+    double fraction =
+        std::min(believable_fraction(x, step_, options_.longest_step), 0.9 * assembly_.largest_step(x, step_));
     double best_fraction = fraction, best = std::numeric_limits<double>::infinity();
     bool accepted = false;
     for (int halving = 0; halving < options_.max_halvings && !accepted; ++halving) {
@@ -207,8 +208,9 @@ void CentralPathOptions::validate() const {
 bool follow_central_path(Assembly& assembly, NewtonSystem& system, const EqualityRows& equalities,
                          std::deque<EliminatedSlack>& slacks, int node_size, double force_scale,
                          const Tolerances& tolerances, const CentralPathOptions& options, int threads, Vector& x,
-                         Vector& equal, const std::function<double(const Vector&)>& judge, const Budget& budget,
-                         Counts& counts, Timings& timings) {
+                         Vector& equal, const std::function<double(const Vector&)>& judge,
+                         const std::function<void(const Vector&)>& observe, const Budget& budget, Counts& counts,
+                         Timings& timings) {
   CentralPath path(assembly, system, equalities, slacks, node_size, force_scale, options, threads, equal, counts,
                    timings);
   path.start(x);
@@ -219,6 +221,7 @@ bool follow_central_path(Assembly& assembly, NewtonSystem& system, const Equalit
       std::max(10 * std::min({tolerances.stationarity, tolerances.feasibility, tolerances.complementarity}),
                10 * options.smallest_width);
   for (int iteration = 0; iteration < options.max_iterations && std::isfinite(path.merit()); ++iteration) {
+    if (observe) observe(x);
     if (path.width() <= ask_below && path.force() <= force_tolerance) {
       const double ratio = judge(x);
       accepted = ratio <= 1;

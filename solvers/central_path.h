@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <functional>
+#include <limits>
 
 #include "core/assembly.h"
 #include "core/solver.h"
@@ -19,6 +20,7 @@ struct CentralPathOptions {
   double smallest_width = 1e-9;    ///< final smoothing width, in the constraint's scale
   int max_iterations = 50;         ///< linear solves before the augmented Lagrangian takes over
   int max_halvings = 6;
+  double longest_step = std::numeric_limits<double>::infinity();  ///< as in NewtonOptions
   void validate() const;
 };
 
@@ -31,11 +33,12 @@ struct CentralPathOptions {
 /// `assembly` sums the problem's energies and the `slacks`; all are borrowed, and the slacks are left with their last
 /// multipliers. Linear equalities and their multipliers, `equal`, are part of every Newton step. `judge(x)` gives the
 /// worst of the residuals over their tolerances; it is asked once smoothing and forces are small, and at most 1 ends
-/// the path with true.
+/// the path with true. `observe(x)`, where it is not empty, sees the start and every point after it.
 bool follow_central_path(Assembly& assembly, NewtonSystem& system, const EqualityRows& equalities,
                          std::deque<EliminatedSlack>& slacks, int node_size, double force_scale,
                          const Tolerances& tolerances, const CentralPathOptions& options, int threads, Vector& x,
-                         Vector& equal, const std::function<double(const Vector&)>& judge, const Budget& budget,
-                         Counts& counts, Timings& timings);
+                         Vector& equal, const std::function<double(const Vector&)>& judge,
+                         const std::function<void(const Vector&)>& observe, const Budget& budget, Counts& counts,
+                         Timings& timings);
 
 }  // namespace taut

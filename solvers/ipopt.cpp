@@ -1,9 +1,12 @@
 #include "solvers/ipopt.h"
 
 #include <IpIpoptApplication.hpp>
+#include <IpIpoptCalculatedQuantities.hpp>
 #include <IpIpoptData.hpp>
+#include <IpOrigIpoptNLP.hpp>
 #include <IpSolveStatistics.hpp>
 #include <IpTNLP.hpp>
+#include <IpTNLPAdapter.hpp>
 #include <IpTimingStatistics.hpp>
 #include <algorithm>
 #include <array>
@@ -31,13 +34,14 @@ constexpr double no_bound = 1e20;  // Ipopt: anything from 1e19 on is infinite
 class Callbacks final : public ::Ipopt::TNLP {
  public:
   Callbacks(NonlinearProgram& program, double force_scale, Vector start, Vector nu, const Budget& budget,
-            Result& result)
+            Result& result, const std::function<void(const Iterate&)>& observer)
       : program_(program),
         scale_(force_scale),
         y_(std::move(start)),
         nu_(std::move(nu)),
         budget_(budget),
-        result_(result) {}
+        result_(result),
+        observer_(observer) {}
 
   const Vector& y() const { return y_; }
   const Vector& nu() const { return nu_; }
@@ -115,8 +119,15 @@ class Callbacks final : public ::Ipopt::TNLP {
     });
   }
 
-  bool intermediate_callback(::Ipopt::AlgorithmMode, Int, Number, Number, Number, Number, Number, Number, Number,
-                             Number, Int, const ::Ipopt::IpoptData*, ::Ipopt::IpoptCalculatedQuantities*) override {
+  bool intermediate_callback(::Ipopt::AlgorithmMode, Int iteration, Number, Number, Number, Number, Number, Number,
+                             Number, Number, Int, const ::Ipopt::IpoptData* data,
+                             ::Ipopt::IpoptCalculatedQuantities* quantities) override {
+    if (observer_) {
+      guarded([&] {
+        show(iteration, *data, *quantities);
+        return true;
+      });
+    }
     stopped_ = budget_.interrupted() || budget_.out_of_time();
     return !failure_ && !stopped_;
   }
@@ -129,6 +140,18 @@ class Callbacks final : public ::Ipopt::TNLP {
   }
 
  private:
+  /// Shows the observer the current point, unless that belongs to the restoration phase's own problem.
+  void show(Int iteration, const ::Ipopt::IpoptData& data, ::Ipopt::IpoptCalculatedQuantities& quantities) {
+    auto* posed = dynamic_cast<::Ipopt::OrigIpoptNLP*>(::Ipopt::GetRawPtr(quantities.GetIpoptNLP()));
+    auto* adapter = posed ? dynamic_cast<::Ipopt::TNLPAdapter*>(::Ipopt::GetRawPtr(posed->nlp())) : nullptr;
+    if (!adapter) return;
+    Vector y(program_.variables()), nu(program_.rows());
+    adapter->ResortX(*data.curr()->x(), y.data());
+    adapter->ResortG(*data.curr()->y_c(), *data.curr()->y_d(), nu.data());
+    result_.counts.outer = result_.counts.linear_solves = iteration;
+    observer_({program_.expand(y), program_.multipliers(y, scale_ * nu), 0, result_.counts});
+  }
+
   template <class Work>
   bool guarded(const Work& work) {
     if (failure_) return false;
@@ -156,6 +179,7 @@ class Callbacks final : public ::Ipopt::TNLP {
   Vector y_, nu_, scratch_;
   const Budget& budget_;
   Result& result_;
+  const std::function<void(const Iterate&)>& observer_;
   bool stopped_ = false;
   std::exception_ptr failure_;
 };
@@ -319,9 +343,10 @@ void Ipopt::run(const Problem& problem, const WarmStart& warm, const Budget& bud
   ::Ipopt::SmartPtr<::Ipopt::IpoptApplication> application = new ::Ipopt::IpoptApplication(false);
   configure(options_, use_warm, *application);
   application->Initialize("");  // no options file, whatever lies in the working directory
-  const ::Ipopt::SmartPtr<Callbacks> callbacks = new Callbacks(
-      program, std::isfinite(force_scale) && force_scale > 0 ? force_scale : 1.0, start,
-      use_warm ? program.row_multipliers(start, warm.multipliers) : Vector::Zero(program.rows()), budget, result);
+  const ::Ipopt::SmartPtr<Callbacks> callbacks =
+      new Callbacks(program, std::isfinite(force_scale) && force_scale > 0 ? force_scale : 1.0, start,
+                    use_warm ? program.row_multipliers(start, warm.multipliers) : Vector::Zero(program.rows()), budget,
+                    result, observer);
   ApplicationReturnStatus ending = ::Ipopt::Solve_Succeeded;  // nothing free: nothing to do
   if (program.variables() > 0) ending = application->OptimizeTNLP(::Ipopt::GetRawPtr(callbacks));
   callbacks->rethrow();

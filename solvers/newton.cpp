@@ -21,6 +21,12 @@ void NewtonOptions::validate() const {
   if (!(guard > 0 && guard < 1)) throw std::invalid_argument("NewtonOptions: guard must be between 0 and 1");
 }
 
+double believable_fraction(const Vector& x, const Vector& step, double longest_step) {
+  if (!std::isfinite(longest_step) || step.isZero(0)) return 1;
+  const double allowed = longest_step * std::max(1.0, x.lpNorm<Eigen::Infinity>());
+  return std::min(1.0, allowed / step.lpNorm<Eigen::Infinity>());
+}
+
 double nodal_max_norm(const Vector& force, int node_size) {
   double largest = 0;
   for (Index first = 0; first < force.size(); first += node_size) {
@@ -64,6 +70,19 @@ void Newton::evaluate(NewtonState& state, Counts& counts, Timings& timings) {
   state.nodal_norm = nodal_max_norm(state.gradient, node_size_);
 }
 
+/// The exact Hessian that the assembly holds, shifted as little as makes it positive definite; false where the shift
+/// would be larger than its diagonal. The last shift, a third of it, is tried first [Waechter and Biegler 2006, 3.1].
+bool Newton::factorize_shifted(const std::function<bool(double)>& factorize) {
+  const double unit = assembly_.matrix().diagonal().cwiseAbs().mean();
+  double shift = shift_ > 1e-5 * unit ? shift_ / 3 : 0;
+  for (shift_ = 0; shift <= unit; shift = std::max(4 * shift, 1e-4 * unit)) {
+    if (!factorize(shift)) continue;
+    shift_ = shift;
+    return true;
+  }
+  return false;
+}
+
 /// Solves H step = -gradient with the best Hessian that is positive definite; false where none is found.
 bool Newton::direction(const NewtonState& state, Counts& counts, Timings& timings) {
   const auto factorize = [&](double shift) {
@@ -79,7 +98,7 @@ bool Newton::direction(const NewtonState& state, Counts& counts, Timings& timing
   bool positive = false;
   if (try_exact) {
     assemble(Curvature::exact);
-    positive = factorize(0);
+    positive = equalities_.count() > 0 ? factorize_shifted(factorize) : factorize(0);
     curvature_ = positive ? Curvature::exact : Curvature::positive_semidefinite;
     if (!positive) {
       wait_ = patience_;
@@ -92,8 +111,9 @@ bool Newton::direction(const NewtonState& state, Counts& counts, Timings& timing
     positive = factorize(0);
     double shift = 0;
     for (int attempt = 0; !positive && attempt < 12; ++attempt) {
-      // Relative to the stiffest entry: 1e-10, 1e-9, ...
-      shift = shift > 0 ? 10 * shift : 1e-10 * assembly_.matrix().coeffs().abs().maxCoeff();
+      // Relative to the stiffest entry: 1e-10, 1e-9, ... Where all are zero, the gradient is followed.
+      const double stiffest = assembly_.matrix().coeffs().abs().maxCoeff();
+      shift = shift > 0 ? 10 * shift : 1e-10 * (stiffest > 0 ? stiffest : 1.0);
       if (!std::isfinite(shift)) return false;
       positive = factorize(shift);
     }
@@ -117,7 +137,8 @@ bool Newton::line_search(NewtonState& state, Counts& counts, Timings& timings) {
   const double start = merit(state);
   // Differences of the value below this are round-off; there the gradient decides.
   const double noise = 1e-13 * std::abs(start) + 1e-300;
-  double fraction = std::min(1.0, options_.guard * assembly_.largest_step(state.x, step_));
+  double fraction = std::min(believable_fraction(state.x, step_, options_.longest_step),
+                             options_.guard * assembly_.largest_step(state.x, step_));
   const double gradient_norm = state.gradient.norm();
   for (int halving = 0; halving < options_.max_halvings; ++halving, fraction *= 0.5) {
     trial_.x = state.x + fraction * step_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 
 #include "core/assembly.h"
 #include "core/solver.h"
@@ -14,6 +15,9 @@ struct NewtonOptions {
   int max_halvings = 40;              ///< of the step in one line search
   double sufficient_decrease = 1e-4;  ///< Armijo's constant
   double guard = 0.9;                 ///< fraction of the largest step that guarded elements allow
+  /// No entry of a step exceeds this times max(1, |x|_inf): where the matrix is nearly singular, Newton's step is not
+  /// to be believed. Infinity for scenes, whose masses bound it.
+  double longest_step = std::numeric_limits<double>::infinity();
   void validate() const;
 };
 
@@ -44,6 +48,8 @@ class NewtonSystem {
     std::size_t bytes = 0;
   };
   virtual Size size() const { return {}; }
+  /// How many factorisations so far needed pivoting.
+  virtual Index pivoted() const { return 0; }
 };
 
 /// Fixed variables substituted by the assembly itself, CHOLMOD in the order of its matrix; no equalities.
@@ -65,9 +71,10 @@ class SubstitutedSystem final : public NewtonSystem {
 
 /// Semismooth Newton with an Armijo line search on a sum of energies. The exact Hessian is tried first; where it is not
 /// positive definite or its step fails, the positive semidefinite one serves for some iterations. A shift is added
-/// where even that is singular (slack static membranes). Where there are linear equalities, positions and their
-/// multipliers move together, and while they are violated the search is on value + rho |A x - b|_1 with rho above every
-/// multiplier [Nocedal and Wright 2006, 18.3].
+/// where even that is singular (slack static membranes). With linear equalities the exact one is shifted instead: their
+/// covers buckle, and steps with the semidefinite Hessian, too stiff in just that direction, are short. Where there are
+/// linear equalities, positions and their multipliers move together, and while they are violated the search is on value
+/// + rho |A x - b|_1 with rho above every multiplier [Nocedal and Wright 2006, 18.3].
 class Newton {
  public:
   /// `fixed` are the variables that stay; all is borrowed.
@@ -84,6 +91,7 @@ class Newton {
 
  private:
   void evaluate(NewtonState& state, Counts& counts, Timings& timings);
+  bool factorize_shifted(const std::function<bool(double)>& factorize);
   bool direction(const NewtonState& state, Counts& counts, Timings& timings);
   bool line_search(NewtonState& state, Counts& counts, Timings& timings);
 
@@ -96,12 +104,16 @@ class Newton {
   int node_size_;
   NewtonOptions options_;
   double weight_ = 0;  // rho
+  double shift_ = 0;   // of the last exact Hessian, with equalities
   Vector step_, multiplier_step_;
   NewtonState trial_;
   Curvature curvature_ = Curvature::positive_semidefinite;
   int wait_ = 0;  // iterations before the exact Hessian is tried again
   int patience_ = 1;
 };
+
+/// The fraction of a step that NewtonOptions::longest_step leaves, at most 1.
+double believable_fraction(const Vector& x, const Vector& step, double longest_step);
 
 /// The largest Euclidean norm over nodes of `node_size` consecutive entries.
 double nodal_max_norm(const Vector& force, int node_size);

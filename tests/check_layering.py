@@ -45,6 +45,7 @@ THIRD_PARTY = [
     ("Ip[A-Z]*.hpp", ("solvers/ipopt.cpp",)),
     ("nlopt.h", ("solvers/nlopt.cpp",)),
     ("Spectra/*", ("src/dynamics/modal/eigen_solver.cpp",)),
+    ("asl*.h", ("problems/nl_model.cpp",)),
     ("malloc.h", ("src/cli/main.cpp",)),
     ("CLI/*", ("src/cli/*.cpp",)),
     ("spdlog/*", ("src/cli/*.cpp",)),

@@ -31,6 +31,7 @@ void add_check(CLI::App& program, int& code);
 void add_list(CLI::App& program, int& code);
 void add_schema(CLI::App& program, int& code);
 void add_compare(CLI::App& program, int& code);
+void add_chart(CLI::App& program, int& code);
 void add_modes(CLI::App& program, int& code);
 void add_replay(CLI::App& program, int& code);
 void add_compare_worker(CLI::App& program, int& code);  // what compare starts; in no help

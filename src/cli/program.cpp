@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/model.h"
 #include "problems/scene.h"
 #include "study/run_folder.h"
 
@@ -25,6 +26,7 @@ constexpr const char* footer =
     "  taut check out/cloth                      judge what is stored there once more\n"
     "  taut solve --help                         everything about solving\n"
     "  taut compare --help                       solvers against each other\n"
+    "  taut chart --help                         speed against accuracy\n"
     "\n"
     "Exit codes: 0 solved within tolerance, 1 internal error or a file that cannot be written,\n"
     "2 wrong usage or input, 3 not solved (the result is written all the same), 130 interrupted.";
@@ -49,31 +51,11 @@ int refuse(const CLI::App& program, const CLI::ParseError& error) {
               exit_bad_input);
 }
 
-}  // namespace
-
-int run_program(int argc, char** argv) {
-  CLI::App program(description, "taut");
-  program.footer(footer);
-  program.set_version_flag("--version", "taut " TAUT_VERSION);
-  program.require_subcommand(1);
-  int code = exit_solved;
-  add_solve(program, code);
-  add_check(program, code);
-  add_list(program, code);
-  add_schema(program, code);
-  add_compare(program, code);
-  add_modes(program, code);
-  add_replay(program, code);
-  add_compare_worker(program, code);
+/// The exit code of `work`, or that of the exception it ends with.
+template <class Work>
+int guarded(const Work& work) {
   try {
-    program.parse(argc, argv);
-    return code;
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) {  // --help and --version come this way
-      program.exit(error);
-      return exit_solved;
-    }
-    return refuse(program, error);
+    return work();
   } catch (const UsageError& error) {
     return fail(error.what(), exit_bad_input);
   } catch (const InputError& error) {
@@ -85,6 +67,38 @@ int run_program(int argc, char** argv) {
   } catch (const std::exception& error) {
     return fail(error.what(), exit_internal_error);
   }
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv) {
+  if (is_ampl_call(argc, argv)) return guarded([&] { return run_as_ampl_solver(argc, argv); });
+  CLI::App program(description, "taut");
+  program.footer(footer);
+  program.set_version_flag("-v,--version", "taut " TAUT_VERSION);
+  program.require_subcommand(1);
+  int code = exit_solved;
+  add_solve(program, code);
+  add_check(program, code);
+  add_list(program, code);
+  add_schema(program, code);
+  add_compare(program, code);
+  add_chart(program, code);
+  add_modes(program, code);
+  add_replay(program, code);
+  add_compare_worker(program, code);
+  return guarded([&]() -> int {
+    try {
+      program.parse(argc, argv);
+      return code;
+    } catch (const CLI::ParseError& error) {
+      if (error.get_exit_code() == 0) {  // --help and --version come this way
+        program.exit(error);
+        return exit_solved;
+      }
+      return refuse(program, error);
+    }
+  });
 }
 
 }  // namespace taut

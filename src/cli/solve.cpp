@@ -12,6 +12,7 @@
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/model.h"
 #include "cli/progress.h"
 #include "cli/report_option.h"
 #include "cli/stop_signals.h"
@@ -27,7 +28,7 @@ namespace {
 struct SolveArguments {
   std::string problem, out, format, accelerations;
   std::vector<std::string> settings;
-  int threads = 0;
+  int threads = 0, history = 0;
   double max_seconds = 0;
   bool resume = false, json = false, quiet = false;
   ReportOption report;
@@ -55,14 +56,29 @@ std::string run_folder(const SolveArguments& arguments) {
   return (std::filesystem::path(arguments.report.folder) / "run").string();
 }
 
+/// A model has no steps to resume, no frames and no modes.
+int solve_model(const SolveArguments& arguments) {
+  if (arguments.resume || arguments.history > 0 || !arguments.accelerations.empty() || !arguments.format.empty() ||
+      arguments.report.wanted())
+    throw UsageError("--resume, --history, --format, --report and --record-accelerations are for scenes; " +
+                     arguments.problem + " is an optimisation model");
+  return solve_model_file({arguments.problem, arguments.out, parse_settings(arguments.settings), arguments.max_seconds,
+                           arguments.json, arguments.quiet});
+}
+
 int solve(const SolveArguments& arguments) {
   arguments.report.check();
   if (arguments.resume && arguments.out.empty())
     throw UsageError("--resume needs --out DIR, the directory of the run to go on with");
   if (arguments.resume && !arguments.accelerations.empty())
     throw UsageError("--record-accelerations needs a run from its beginning, without --resume");
+  if (std::filesystem::path(arguments.problem).extension() == ".nl") return solve_model(arguments);
+  if (arguments.history > 0 && arguments.out.empty())
+    throw UsageError("--history needs --out DIR, which it is written to");
   const std::atomic<bool>& stop_requested = stop_on_signals();
   const Scene scene = read_scene(find_problem(arguments.problem), overrides_of(arguments));
+  if (arguments.history > scene.time.steps)
+    throw UsageError(fmt::format("--history {}: {} has {} steps", arguments.history, scene.name, scene.time.steps));
 
   std::unique_ptr<Progress> progress;
   RunOptions options;
@@ -71,6 +87,7 @@ int solve(const SolveArguments& arguments) {
   options.accelerations = arguments.accelerations;
   options.threads = arguments.threads;
   options.max_seconds = arguments.max_seconds;
+  options.history_step = arguments.history;
   options.stop = &stop_requested;
   options.version = TAUT_VERSION;
   if (!arguments.quiet) {
@@ -118,7 +135,9 @@ constexpr const char* footer =
     "  taut solve problem.json --out out/short --set time.steps=10 --set constraints.limit.max=1.05\n"
     "  taut solve problem.json --out out/long --max-seconds 3600     and later, the same with --resume\n"
     "  taut solve hanging_cloth --report out/report\n"
-    "  taut solve problem.json --json | jq .status";
+    "  taut solve problem.json --json | jq .status\n"
+    "  taut solve model.nl --set solver.tolerance.feasibility=1e-9 --out out/model\n"
+    "                                            an optimisation model of AMPL, Pyomo or JuMP";
 
 }  // namespace
 
@@ -126,7 +145,10 @@ void add_solve(CLI::App& program, int& code) {
   CLI::App* command = program.add_subcommand("solve", "Solve a problem and judge every step");
   command->footer(footer);
   const auto arguments = std::make_shared<SolveArguments>();
-  command->add_option("PROBLEM", arguments->problem, "A problem file, or the name of one in the catalogue")->required();
+  command
+      ->add_option("PROBLEM", arguments->problem,
+                   "A problem file, the name of one in the catalogue, or an AMPL model (.nl)")
+      ->required();
   command->add_option("--out", arguments->out, "Write results to this directory; without it nothing is written")
       ->type_name("DIR");
   command
@@ -155,6 +177,11 @@ void add_solve(CLI::App& program, int& code) {
       ->add_option("--record-accelerations", arguments->accelerations,
                    "Write the spectral accelerations of a modal body to this file (taut replay)")
       ->type_name("FILE");
+  command
+      ->add_option("--history", arguments->history,
+                   "Judge every iterate of this step and write them to DIR/history.csv (taut chart)")
+      ->type_name("STEP")
+      ->check(CLI::Range(1, 1000000000));
   command->add_flag("--resume", arguments->resume,
                     "Go on with the run in DIR; ends with the bits of one never interrupted");
   add_report_option(*command, arguments->report);

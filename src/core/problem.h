@@ -22,6 +22,7 @@ struct Problem {
   std::vector<int> fixed_variables;  ///< ascending
   Vector fixed_values;               ///< as long as fixed_variables
   int node_size = 3;                 ///< variables that form one node, for nodal norms of forces
+  double least_force_scale = 0;      ///< of Residuals::force_scale, where all terms may vanish at the solution
   /// Problems with the same non-zero number have the same energies, constraints, stencils, equalities (but for their
   /// values) and fixed variables, so that a solver may keep its pattern and symbolic factor from one to the next. 0:
   /// not known.

@@ -138,7 +138,7 @@ bool Residuals::within(const Tolerances& tolerances) const {
 }
 
 Judge::Judge(const Problem& problem, const Vector& x)
-    : problem_(problem), x_(x), energies_force_(Vector::Zero(problem.size())) {
+    : problem_(problem), x_(x), energies_force_(Vector::Zero(problem.size())), force_scale_(problem.least_force_scale) {
   if (x.size() != problem.size()) {
     throw std::invalid_argument("residuals: result.x has " + std::to_string(x.size()) + " entries, expected " +
                                 std::to_string(problem.size()));

@@ -28,7 +28,8 @@ struct Violation {
 struct Residuals {
   double stationarity = 0;           ///< max nodal |grad f + sum w J^T lambda| / force_scale, free variables only
   double stationarity_unscaled = 0;  ///< the same in newtons
-  double force_scale = 0;            ///< largest single nodal force of any term, pin reactions included, N
+  double force_scale = 0;            ///< largest single nodal force of any term, pin reactions included, or
+                                     ///< Problem::least_force_scale if that is larger, N
   double feasibility = 0;            ///< max over constraints of violation / violation_scale
   double feasibility_unscaled = 0;   ///< max violation in the constraint's own units
   double complementarity = 0;  ///< max_e |P(p + lambda/s) - p|, p = P(c), s the constraint's largest |lambda|: 0 iff

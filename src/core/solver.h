@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -27,6 +28,14 @@ struct Budget {
   bool out_of_time() const { return std::chrono::steady_clock::now() >= deadline; }
 };
 
+/// Where a solver stands after an iteration. All of it is borrowed.
+struct Iterate {
+  const Vector& x;
+  const std::vector<Vector>& multipliers;  ///< as in Result
+  double penalty = 0;                      ///< the largest of any constraint; 0 where the solver has none
+  const Counts& counts;                    ///< so far in this solve
+};
+
 /// Solves one Problem. A solver may keep patterns and symbolic factors between calls (Problem::topology), so `solve` is
 /// not const; what it returns depends on its arguments only.
 class Solver {
@@ -34,6 +43,10 @@ class Solver {
   virtual ~Solver() = default;
   virtual std::string name() const = 0;
   virtual Result solve(const Problem& problem, const WarmStart& warm, const Budget& budget) = 0;
+
+  /// Called with the start and after every iteration. Empty, it costs nothing; it changes no result. Solvers that show
+  /// no iterates never call it.
+  std::function<void(const Iterate&)> observer;
 };
 
 }  // namespace taut

@@ -148,7 +148,9 @@ std::string compare_terminal(const Comparison& comparison, const std::string& fo
     for (const std::string& line : remarks(problem)) fmt::format_to(out, "{}\n", line);
     fmt::format_to(out, "\n");
   }
-  if (comparison.interrupted) fmt::format_to(out, "interrupted; the same command with --resume goes on\n");
+  if (comparison.interrupted) {
+    fmt::format_to(out, "interrupted{}\n", folder.empty() ? "" : "; the same command with --resume goes on");
+  }
   if (folder.empty()) {
     fmt::format_to(out, "no files written; --out DIR keeps the result\n");
   } else {

@@ -12,8 +12,11 @@
 #include <chrono>
 #include <cstring>
 #include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <thread>
+
+#include "files/atomic_file.h"
 
 namespace taut {
 namespace {
@@ -104,6 +107,16 @@ ChildOutcome run_child(const std::vector<std::string>& command, const std::files
     outcome.code = WEXITSTATUS(status);
   }
   return outcome;
+}
+
+std::string last_line(const std::filesystem::path& log) {
+  if (!std::filesystem::exists(log)) return "";
+  std::istringstream text(read_bytes(log));
+  std::string last;
+  for (std::string line; std::getline(text, line);) {
+    if (!line.empty()) last = line;
+  }
+  return last;
 }
 
 std::string signal_name(int signal) {

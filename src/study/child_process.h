@@ -40,6 +40,9 @@ struct ChildOutcome {
 ChildOutcome run_child(const std::vector<std::string>& command, const std::filesystem::path& log,
                        const ChildLimits& limits, const std::atomic<bool>* stop = nullptr);
 
+/// The last line of a log that is not empty; nothing where the process ended before it had a log. Throws FileError.
+std::string last_line(const std::filesystem::path& log);
+
 /// "SIGSEGV" for 11.
 std::string signal_name(int signal);
 

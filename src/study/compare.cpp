@@ -6,8 +6,8 @@
 
 #include "study/compare_entry.h"
 #include "study/compare_folder.h"
-#include "study/frame_output.h"
 #include "study/machine.h"
+#include "study/unique_name.h"
 
 namespace taut {
 namespace fs = std::filesystem;
@@ -24,14 +24,6 @@ void check(const CompareOptions& options) {
   require(options.time_limit >= 0, "time_limit must be at least 0");
   require(options.memory_limit_bytes >= 0, "memory_limit_bytes must be at least 0");
   require(!options.worker.empty(), "expected a worker's command, got none");
-}
-
-/// `name` as a folder's name that is not yet among `taken`, and then is.
-std::string unique_name(const std::string& name, std::set<std::string>& taken) {
-  const std::string wanted = file_name(name);
-  std::string unique = wanted;
-  for (int k = 2; !taken.insert(unique).second; ++k) unique = wanted + "_" + std::to_string(k);
-  return unique;
 }
 
 EntryRun planned_run(const PlannedEntry& entry, int steps) {

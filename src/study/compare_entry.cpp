@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "files/atomic_file.h"
 #include "files/checkpoint.h"
@@ -18,17 +17,6 @@ using Json = nlohmann::ordered_json;
 
 /// The worker keeps to its time by itself; this much later it is ended.
 constexpr double patience = 1;  // s
-
-/// The last line of the log that is not empty; nothing where the process ended before it had a log.
-std::string last_line(const fs::path& log) {
-  if (!fs::exists(log)) return "";
-  std::istringstream text(read_bytes(log));
-  std::string last;
-  for (std::string line; std::getline(text, line);) {
-    if (!line.empty()) last = line;
-  }
-  return last;
-}
 
 void take_outcome(const ChildOutcome& child, const fs::path& folder, EntryRun& run) {
   run.seconds = child.seconds;

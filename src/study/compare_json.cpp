@@ -35,9 +35,11 @@ Json counts_json(const Counts& counts) {
   return {{"outer", counts.outer},
           {"linear_solves", counts.linear_solves},
           {"factorizations", counts.factorizations},
+          {"pivoted_factorizations", counts.pivoted_factorizations},
           {"symbolic_analyses", counts.symbolic_analyses},
           {"matrix_allocations", counts.matrix_allocations},
-          {"function_evaluations", counts.function_evaluations}};
+          {"function_evaluations", counts.function_evaluations},
+          {"factor_flops", counts.factor_flops}};
 }
 
 Json timings_json(const Timings& t) {

@@ -22,9 +22,6 @@ std::string short_key(const std::string& key, const std::vector<Variation>& all)
   return alike > 1 ? key : last_part(key);
 }
 
-/// True where another value poses the same problem: how it is solved, or in which form a limit is written.
-bool keeps_the_problem(const std::string& key) { return key.starts_with("solver.") || last_part(key) == "form"; }
-
 /// Every choice of one value per variation.
 std::vector<Overrides> combinations(const std::vector<Variation>& variations) {
   std::vector<Overrides> all{{}};
@@ -75,12 +72,14 @@ PlannedEntry plan_entry(const std::filesystem::path& file, const EntryChoice& ch
   return entry;
 }
 
+}  // namespace
+
 double diagonal(const Vector& positions) {
   const auto points = positions.reshaped(3, positions.size() / 3);
   return points.cols() == 0 ? 0 : (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
 }
 
-}  // namespace
+bool keeps_the_problem(const std::string& key) { return key.starts_with("solver.") || last_part(key) == "form"; }
 
 Variation parse_variation(const std::string& text) {
   const std::size_t equals = text.find('=');

@@ -18,6 +18,12 @@ struct Variation {
 /// anything else.
 Variation parse_variation(const std::string& text);
 
+/// True for a key of which another value poses the same problem: how it is solved, or in which form a limit is written.
+bool keeps_the_problem(const std::string& key);
+
+/// The diagonal of the bounding box of points with 3 entries each, m; 0 for none.
+double diagonal(const Vector& positions);
+
 /// Which entries a comparison has: every solver with every combination of variations at every tolerance.
 struct EntryChoice {
   std::vector<std::string> solvers;  ///< labels of solver_entries()

@@ -31,6 +31,7 @@ struct StepRecord {
   int step = 0;     ///< from 1
   double time = 0;  ///< at its end, s (static: load fraction)
   Status status = Status::solved;
+  Status claimed = Status::solved;  ///< by the solver
   std::string message;
   Residuals residuals;  ///< names of nodes are "vertex 3 of cloth"
   std::vector<Penetration> penetrations;

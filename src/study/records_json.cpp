@@ -17,7 +17,9 @@ Json counts_json(const Counts& counts) {
   return {{"outer", counts.outer},
           {"linear_solves", counts.linear_solves},
           {"factorizations", counts.factorizations},
-          {"function_evaluations", counts.function_evaluations}};
+          {"pivoted_factorizations", counts.pivoted_factorizations},
+          {"function_evaluations", counts.function_evaluations},
+          {"factor_flops", counts.factor_flops}};
 }
 
 Json timings_json(const Timings& timings) {
@@ -175,6 +177,7 @@ StepRecord step_of(const Json& json) {
   record.step = json.at("step");
   record.time = number(json.at("time"));
   record.status = status_from_string(json.at("status").get<std::string>());
+  record.claimed = json.contains("claimed") ? status_from_string(json["claimed"].get<std::string>()) : record.status;
   record.message = json.at("message");
   record.residuals = read_residuals(json.at("residuals"));
   for (const auto& [constraint, v] : json.at("violations").items()) {
@@ -191,7 +194,9 @@ StepRecord step_of(const Json& json) {
   record.counts.outer = counts.at("outer");
   record.counts.linear_solves = counts.at("linear_solves");
   record.counts.factorizations = counts.at("factorizations");
+  record.counts.pivoted_factorizations = counts.value("pivoted_factorizations", 0L);
   record.counts.function_evaluations = counts.at("function_evaluations");
+  record.counts.factor_flops = counts.value("factor_flops", 0.0);
   record.seconds = {number(seconds.at("total")), number(seconds.at("assembly")), number(seconds.at("analysis")),
                     number(seconds.at("factorization")), number(seconds.at("solve"))};
   record.judging = number(seconds.at("judging"));
@@ -278,6 +283,7 @@ std::string step_line(const StepRecord& record) {
   json["step"] = record.step;
   json["time"] = record.time;
   json["status"] = to_string(record.status);
+  json["claimed"] = to_string(record.claimed);
   json["message"] = record.message;
   json["residuals"] = residuals_json(record.residuals);
   json["violations"] = violations_json(record);

@@ -35,9 +35,11 @@ Counts read_counts(const Json& json) {
   return {json.at("outer"),
           json.at("linear_solves"),
           json.at("factorizations"),
+          json.value("pivoted_factorizations", 0L),
           json.at("symbolic_analyses"),
           json.at("matrix_allocations"),
-          json.at("function_evaluations")};
+          json.at("function_evaluations"),
+          json.value("factor_flops", 0.0)};
 }
 
 }  // namespace taut

@@ -29,6 +29,7 @@ constexpr double checkpoint_share = 0.05;  // of the time, where steps are short
 void check(const RunOptions& options) {
   if (!(options.max_seconds >= 0)) throw std::invalid_argument("RunOptions: max_seconds must be at least 0");
   if (options.threads < 0) throw std::invalid_argument("RunOptions: threads must be at least 0");
+  if (options.history_step < 0) throw std::invalid_argument("RunOptions: history_step must be at least 0");
   if (options.resume && options.folder.empty()) throw std::invalid_argument("RunOptions: resume needs a folder");
   if (options.resume && !options.accelerations.empty())
     throw std::invalid_argument("RunOptions: accelerations are recorded from the beginning, not with resume");
@@ -160,8 +161,12 @@ void Run::loop() {
 
 /// False where the run ends here.
 bool Run::step() {
-  const Result result = solve_step(*stepper_, *solver_, scene_.solver.tolerance, scene_.time.halvings, budget_);
   const Problem& problem = stepper_->problem();
+  std::optional<History> history;
+  if (folder_ && stepper_->state().step + 1 == options_.history_step) history.emplace(*solver_, problem);
+  const Result result = solve_step(*stepper_, *solver_, scene_.solver.tolerance, scene_.time.halvings, budget_);
+  if (history) folder_->write_history(history->points());
+  history.reset();
   const bool cut_short = (result.status == Status::interrupted && budget_.interrupted()) ||
                          (result.status == Status::time_limit && budget_.out_of_time());
   if (cut_short) {
@@ -202,7 +207,7 @@ StepRecord Run::judge(const Problem& problem, const Result& result) {
   name_for_people(record.residuals, problem, *model_);
   record.step = stepper_->state().step + 1;
   record.time = stepper_->time() + stepper_->options().step;
-  record.status = result.status;
+  record.status = record.claimed = result.status;
   record.message = result.message;
   record.counts = result.counts;
   record.seconds = result.timings;

@@ -19,6 +19,7 @@ constexpr const char* summary_file = "summary.json";
 constexpr const char* steps_file = "steps.jsonl";
 constexpr const char* problem_file = "problem.json";
 constexpr const char* probes_file = "probes.csv";
+constexpr const char* history_file = "history.csv";
 constexpr const char* before_prefix = "before ";
 
 /// The state before the last step, under names of its own. Its positions and velocities are the previous ones of the
@@ -115,6 +116,7 @@ void RunFolder::begin(const Scene& scene, const Continuation& start) {
   // First the checkpoint: killed at any point after it, the folder is a run's that resumes from the beginning.
   replace_checkpoint(scene.hash, start);
   fs::remove(file(summary_file));
+  fs::remove(file(history_file));
   remove_frames_after(path_, -1);
   steps_.emplace(file(steps_file));
   fs::remove(file(probes_file));
@@ -143,6 +145,10 @@ void RunFolder::append_step(const StepRecord& record) {
   probes_->append(line);
 }
 
+void RunFolder::write_history(const std::vector<HistoryPoint>& points) const {
+  write_atomically(file(history_file), history_csv(points));
+}
+
 void RunFolder::write_checkpoint(const std::string& input_hash, const Continuation& now) {
   steps_->sync();
   if (probes_) probes_->sync();
@@ -161,6 +167,7 @@ void RunFolder::replace_checkpoint(const std::string& input_hash, const Continua
 void RunFolder::write_summary(RunSummary& summary) const {
   summary.files = {checkpoint_file, problem_file, steps_file, summary_file};
   if (probes_) summary.files.emplace_back(probes_file);
+  if (fs::exists(file(history_file))) summary.files.emplace_back(history_file);
   for (const auto& entry : fs::recursive_directory_iterator(path_)) {
     const std::string extension = entry.path().extension().string();
     const bool ours = extension == ".vtu" || extension == ".obj" || extension == ".svg" || extension == ".pvd";

@@ -8,6 +8,7 @@
 #include "dynamics/stepper.h"
 #include "files/json_lines.h"
 #include "problems/scene.h"
+#include "study/history.h"
 #include "study/records.h"
 
 namespace taut {
@@ -30,8 +31,7 @@ struct Continuation {
 };
 
 /// The folder that a run writes to: checkpoint.bin, summary.json, steps.jsonl, problem.json, probes.csv where there are
-/// probes; frames and pictures are
-/// FrameOutput's.
+/// probes, history.csv where a step was watched; frames and pictures are FrameOutput's.
 class RunFolder {
  public:
   /// Only looks: nothing is written or removed before begin(). Throws RunRefused for a folder that is neither empty nor
@@ -49,6 +49,7 @@ class RunFolder {
   void go_on(const Scene& scene, const Continuation& from);
 
   void append_step(const StepRecord& record);
+  void write_history(const std::vector<HistoryPoint>& points) const;
   /// Forces the steps to disk and replaces the checkpoint.
   void write_checkpoint(const std::string& input_hash, const Continuation& now);
   void write_summary(RunSummary& summary) const;

@@ -1,0 +1,198 @@
+#include "problems/nl_problem.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "constraints/convex_sets.h"
+#include "problems/scene.h"
+
+namespace taut {
+namespace {
+
+constexpr double largest_derivative = 100;  // of a row at the start [Waechter and Biegler 2006, 3.8]
+
+/// Eigenvalues replaced by their absolute values: a step is long where the curvature is small, whatever its sign.
+void make_positive_semidefinite(double* entries, Index width) {
+  Eigen::Map<Matrix> hessian(entries, width, width);
+  if (!hessian.allFinite()) return;
+  const Eigen::SelfAdjointEigenSolver<Matrix> solver(hessian);
+  if (solver.eigenvalues().minCoeff() >= 0) return;
+  hessian = solver.eigenvectors() * solver.eigenvalues().cwiseAbs().asDiagonal() * solver.eigenvectors().transpose();
+}
+
+class NlObjective final : public Energy {
+ public:
+  explicit NlObjective(const NlModel& model)
+      : model_(model),
+        sign_(model.maximise() ? -1 : 1),
+        stencils_(static_cast<int>(model.variables_of(NlModel::objective).size())) {
+    stencils_.add(model.variables_of(NlModel::objective));
+  }
+  std::string name() const override { return "objective"; }
+  const Stencils& stencils() const override { return stencils_; }
+  bool has_curvature() const override { return !model_.linear(NlModel::objective); }
+  double evaluate(Index, const double* x, double* gradient, double* hessian, Curvature curvature) const override {
+    const double value = model_.evaluate(NlModel::objective, x, gradient, hessian);
+    const Index width = stencils_.width();
+    if (sign_ < 0 && gradient) Eigen::Map<Vector>(gradient, width) *= -1;
+    if (sign_ < 0 && hessian) Eigen::Map<Vector>(hessian, width * width) *= -1;
+    if (hessian && curvature == Curvature::positive_semidefinite) make_positive_semidefinite(hessian, width);
+    return sign_ * value;
+  }
+
+ private:
+  const NlModel& model_;
+  double sign_;
+  Stencils stencils_;
+};
+
+/// lower <= scale g(x) <= upper for one row.
+class NlRow final : public Constraint {
+ public:
+  NlRow(const NlModel& model, int row, double scale)
+      : model_(model),
+        row_(row),
+        scale_(scale),
+        set_(1, scale * model.row_lower()[row], scale * model.row_upper()[row]),
+        stencils_(static_cast<int>(model.variables_of(row).size())) {
+    stencils_.add(model.variables_of(row));
+  }
+  std::string name() const override { return model_.row_name(row_); }
+  const Stencils& stencils() const override { return stencils_; }
+  int rows() const override { return 1; }
+  const ConvexSet& set() const override { return set_; }
+  void evaluate(Index, const double* x, double* c, double* jacobian) const override {
+    *c = scale_ * model_.evaluate(row_, x, jacobian, nullptr);
+    if (jacobian) Eigen::Map<Vector>(jacobian, stencils_.width()) *= scale_;
+  }
+  void hessian(Index, const double* x, const double* multipliers, Curvature curvature, double* hessian) const override {
+    const Index width = stencils_.width();
+    model_.evaluate(row_, x, nullptr, hessian);
+    Eigen::Map<Vector>(hessian, width * width) *= scale_ * *multipliers;
+    if (curvature == Curvature::positive_semidefinite) make_positive_semidefinite(hessian, width);
+  }
+  double violation(Index, const double* x) const override {
+    const double value = model_.evaluate(row_, x, nullptr, nullptr);
+    return std::max({0.0, model_.row_lower()[row_] - value, value - model_.row_upper()[row_]});
+  }
+  std::string element_name(Index) const override { return "row " + name(); }
+
+ private:
+  const NlModel& model_;
+  int row_;
+  double scale_;
+  Box set_;
+  Stencils stencils_;
+};
+
+class NlBound final : public Constraint {
+ public:
+  NlBound(const NlModel& model, int variable)
+      : model_(model), variable_(variable), set_(1, model.lower()[variable], model.upper()[variable]) {
+    stencils_.add(std::array{variable});
+  }
+  std::string name() const override { return "bounds of " + model_.variable_name(variable_); }
+  const Stencils& stencils() const override { return stencils_; }
+  int rows() const override { return 1; }
+  const ConvexSet& set() const override { return set_; }
+  void evaluate(Index, const double* x, double* c, double* jacobian) const override {
+    *c = *x;
+    if (jacobian) *jacobian = 1;
+  }
+  void hessian(Index, const double*, const double*, Curvature, double* hessian) const override { *hessian = 0; }
+  double violation(Index, const double* x) const override {
+    return std::max({0.0, model_.lower()[variable_] - *x, *x - model_.upper()[variable_]});
+  }
+  std::string element_name(Index) const override { return "variable " + model_.variable_name(variable_); }
+
+ private:
+  const NlModel& model_;
+  int variable_;
+  Box set_;
+  Stencils stencils_{1};
+};
+
+Vector local(const NlModel& model, int function, const Vector& x) {
+  const std::vector<int>& own = model.variables_of(function);
+  Vector values(static_cast<Index>(own.size()));
+  for (std::size_t k = 0; k < own.size(); ++k) values[static_cast<Index>(k)] = x[own[k]];
+  return values;
+}
+
+void check_width(const NlModel& model, int function, const std::string& what) {
+  const std::size_t width = model.variables_of(function).size();
+  if (width > max_stencil_width)
+    throw InputError(model.name() + ".nl: found " + std::to_string(width) + " variables in " + what +
+                     ", allowed: " + std::to_string(max_stencil_width));
+}
+
+}  // namespace
+
+NlProblem::NlProblem(const NlModel& model) : model_(model) {
+  problem_.name = model.name();
+  problem_.node_size = 1;
+  problem_.topology = new_topology();
+  problem_.initial_guess = model.start();
+  std::vector<double> fixed;
+  for (int i = 0; i < model.variables(); ++i) {
+    const double lower = model.lower()[i], upper = model.upper()[i];
+    if (lower == upper) {
+      problem_.fixed_variables.push_back(i);
+      fixed.push_back(lower);
+    } else if (std::isfinite(lower) || std::isfinite(upper)) {
+      constraints_.push_back(std::make_unique<NlBound>(model, i));
+    }
+    problem_.initial_guess[i] = std::clamp(problem_.initial_guess[i], lower, upper);
+  }
+  problem_.fixed_values = Eigen::Map<const Vector>(fixed.data(), static_cast<Index>(fixed.size()));
+  for (int row = 0; row < model.rows(); ++row) {
+    check_width(model, row, "row " + model.row_name(row));
+    const bool bounded = std::isfinite(model.row_lower()[row]) || std::isfinite(model.row_upper()[row]);
+    constraint_of_row_.push_back(bounded && !model.variables_of(row).empty() ? static_cast<int>(constraints_.size())
+                                                                             : -1);
+    Vector x = local(model, row, problem_.initial_guess), gradient(x.size());
+    model.evaluate(row, x.data(), gradient.data(), nullptr);
+    const double largest = x.size() > 0 ? gradient.lpNorm<Eigen::Infinity>() : 0.0;
+    row_scale_.push_back(largest > largest_derivative && std::isfinite(largest) ? largest_derivative / largest : 1.0);
+    if (constraint_of_row_.back() >= 0) constraints_.push_back(std::make_unique<NlRow>(model, row, row_scale_.back()));
+  }
+  if (model.has_objective() && !model.variables_of(NlModel::objective).empty()) {
+    check_width(model, NlModel::objective, "the objective");
+    energies_.push_back(std::make_unique<NlObjective>(model));
+    Vector x = local(model, NlModel::objective, problem_.initial_guess), gradient(x.size());
+    model.evaluate(NlModel::objective, x.data(), gradient.data(), nullptr);
+    const double largest = gradient.lpNorm<Eigen::Infinity>();
+    // Forces may all vanish at the solution of a general problem: their size at the start is the measure then.
+    problem_.least_force_scale = largest > 0 && std::isfinite(largest) ? std::min(1.0, largest) : 1.0;
+  }
+  for (const auto& energy : energies_) problem_.energies.push_back(energy.get());
+  for (const auto& constraint : constraints_) problem_.constraints.push_back(constraint.get());
+}
+
+NlProblem::~NlProblem() = default;
+
+double NlProblem::objective(const Vector& x) const {
+  return model_.has_objective()
+             ? model_.evaluate(NlModel::objective, local(model_, NlModel::objective, x).data(), nullptr, nullptr)
+             : 0.0;
+}
+
+std::string NlProblem::name_of(const std::string& node) const {
+  const std::string prefix = "vertex ";
+  return node.starts_with(prefix) ? "variable " + model_.variable_name(std::stoi(node.substr(prefix.size()))) : node;
+}
+
+Vector NlProblem::dual(const Result& result) const {
+  Vector dual = Vector::Zero(model_.rows());
+  const double sign = model_.maximise() ? 1 : -1;
+  for (std::size_t row = 0; row < constraint_of_row_.size(); ++row) {
+    if (constraint_of_row_[row] < 0) continue;
+    dual[static_cast<Index>(row)] =
+        sign * row_scale_[row] * result.multipliers[static_cast<std::size_t>(constraint_of_row_[row])][0];
+  }
+  return dual;
+}
+
+}  // namespace taut
