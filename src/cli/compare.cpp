@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,9 +13,11 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/progress.h"
+#include "cli/report_option.h"
 #include "cli/stop_signals.h"
 #include "cli/temporary_folder.h"
 #include "files/atomic_file.h"
+#include "report/compare_report.h"
 #include "report/compare_tables.h"
 #include "study/compare_job.h"
 #include "study/compare_json.h"
@@ -31,6 +34,7 @@ struct CompareArguments {
   int steps = 0, repeat = 1, threads = 1;
   double time_limit = 600, memory_limit = 8192;
   bool free = false, cold = false, resume = false, json = false, quiet = false;
+  ReportOption report;
 };
 
 CompareOptions options_of(const CompareArguments& arguments) {
@@ -70,6 +74,7 @@ int exit_code(const Comparison& comparison) {
 }
 
 int compare_solvers(const CompareArguments& arguments) {
+  arguments.report.check();
   if (arguments.resume && arguments.out.empty())
     throw UsageError("--resume needs --out DIR, the directory of the comparison to go on with");
   CompareOptions options = options_of(arguments);
@@ -94,6 +99,7 @@ int compare_solvers(const CompareArguments& arguments) {
                            : arguments.quiet ? ""
                                              : compare_terminal(comparison, arguments.out);
   const bool printed = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+  if (arguments.report.wanted()) arguments.report.write(compare_report(comparison, typed_command()), arguments.quiet);
   return printed ? exit_code(comparison) : exit_internal_error;
 }
 
@@ -112,6 +118,7 @@ std::string footer() {
          "Files in DIR: compare.json (everything), compare.md, compare.csv (a line per entry and step), and a "
          "directory\n"
          "per problem with the states and, per entry, its log, steps.jsonl and solutions.\n"
+         "--report DIR writes DIR/index.html: charts, a map of what became of each step, how to repeat each entry.\n"
          "\n"
          "Exit codes: 0 the comparison is complete, whatever its result; 1 internal error; 2 wrong usage or input;\n"
          "3 complete, but the reference did not solve every step; 130 interrupted, finished processes are kept.\n"
@@ -182,6 +189,7 @@ void add_compare(CLI::App& program, int& code) {
       ->check(CLI::NonNegativeNumber);
   command->add_option("--out", arguments->out, "Write everything to this directory")->type_name("DIR");
   command->add_flag("--resume", arguments->resume, "Take over what is finished in DIR");
+  add_report_option(*command, arguments->report);
   command->add_flag("--json", arguments->json, "Print compare.json on standard output, and nothing else there");
   command->add_flag("--quiet", arguments->quiet, "No progress and no tables: errors only");
   command->callback([arguments, &code] { code = compare_solvers(*arguments); });

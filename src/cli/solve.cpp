@@ -4,7 +4,9 @@
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -12,8 +14,10 @@
 #include "cli/commands.h"
 #include "cli/model.h"
 #include "cli/progress.h"
+#include "cli/report_option.h"
 #include "cli/stop_signals.h"
 #include "problems/read_scene.h"
+#include "report/run_report.h"
 #include "report/terminal_summary.h"
 #include "study/records_json.h"
 #include "study/run.h"
@@ -27,6 +31,7 @@ struct SolveArguments {
   int threads = 0, history = 0;
   double max_seconds = 0;
   bool resume = false, json = false, quiet = false;
+  ReportOption report;
 };
 
 Overrides overrides_of(const SolveArguments& arguments) {
@@ -45,16 +50,24 @@ int exit_code(Status status) {
   return status == Status::interrupted ? exit_interrupted : exit_not_solved;
 }
 
+/// Where the run is written: a report without --out keeps its run beside it.
+std::string run_folder(const SolveArguments& arguments) {
+  if (!arguments.out.empty() || !arguments.report.wanted()) return arguments.out;
+  return (std::filesystem::path(arguments.report.folder) / "run").string();
+}
+
 /// A model has no steps to resume, no frames and no modes.
 int solve_model(const SolveArguments& arguments) {
-  if (arguments.resume || arguments.history > 0 || !arguments.accelerations.empty() || !arguments.format.empty())
-    throw UsageError("--resume, --history, --format and --record-accelerations are for scenes; " + arguments.problem +
-                     " is an optimisation model");
+  if (arguments.resume || arguments.history > 0 || !arguments.accelerations.empty() || !arguments.format.empty() ||
+      arguments.report.wanted())
+    throw UsageError("--resume, --history, --format, --report and --record-accelerations are for scenes; " +
+                     arguments.problem + " is an optimisation model");
   return solve_model_file({arguments.problem, arguments.out, parse_settings(arguments.settings), arguments.max_seconds,
                            arguments.json, arguments.quiet});
 }
 
 int solve(const SolveArguments& arguments) {
+  arguments.report.check();
   if (arguments.resume && arguments.out.empty())
     throw UsageError("--resume needs --out DIR, the directory of the run to go on with");
   if (arguments.resume && !arguments.accelerations.empty())
@@ -69,7 +82,7 @@ int solve(const SolveArguments& arguments) {
 
   std::unique_ptr<Progress> progress;
   RunOptions options;
-  options.folder = arguments.out;
+  options.folder = run_folder(arguments);
   options.resume = arguments.resume;
   options.accelerations = arguments.accelerations;
   options.threads = arguments.threads;
@@ -94,8 +107,9 @@ int solve(const SolveArguments& arguments) {
 
   const std::string text = arguments.json    ? summary_text(summary)
                            : arguments.quiet ? ""
-                                             : terminal_summary(summary, arguments.out);
+                                             : terminal_summary(summary, options.folder.string());
   const bool printed = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+  if (arguments.report.wanted()) arguments.report.write(run_report(options.folder, typed_command()), arguments.quiet);
   return printed ? exit_code(summary.status) : exit_internal_error;
 }
 
@@ -108,6 +122,8 @@ constexpr const char* footer =
     "Files in DIR: summary.json (the verdict), steps.jsonl (a line a step), frames/ and NAME.pvd (ParaView),\n"
     "pictures/ (SVG), problem.json (the completed problem, which runs again), checkpoint.bin (for --resume).\n"
     "An earlier run in DIR is replaced; a directory with anything else in it is refused.\n"
+    "--report DIR writes DIR/index.html, with charts and the result in three dimensions, from the files of --out;\n"
+    "without --out those are in DIR/run.\n"
     "\n"
     "Ctrl-C (or SIGTERM) ends the run after the current linear solve and keeps every finished step; twice, at once.\n"
     "\n"
@@ -118,6 +134,7 @@ constexpr const char* footer =
     "  taut solve hanging_cloth --out out/cloth\n"
     "  taut solve problem.json --out out/short --set time.steps=10 --set constraints.limit.max=1.05\n"
     "  taut solve problem.json --out out/long --max-seconds 3600     and later, the same with --resume\n"
+    "  taut solve hanging_cloth --report out/report\n"
     "  taut solve problem.json --json | jq .status\n"
     "  taut solve model.nl --set solver.tolerance.feasibility=1e-9 --out out/model\n"
     "                                            an optimisation model of AMPL, Pyomo or JuMP";
@@ -167,6 +184,7 @@ void add_solve(CLI::App& program, int& code) {
       ->check(CLI::Range(1, 1000000000));
   command->add_flag("--resume", arguments->resume,
                     "Go on with the run in DIR; ends with the bits of one never interrupted");
+  add_report_option(*command, arguments->report);
   command->add_flag("--json", arguments->json, "Print summary.json on standard output, and nothing else there");
   command->add_flag("--quiet", arguments->quiet, "No progress and no summary: errors only");
   command->callback([arguments, &code] { code = solve(*arguments); });

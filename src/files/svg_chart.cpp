@@ -44,16 +44,14 @@ class Scale {
   }
   std::vector<double> ticks() const {
     std::vector<double> ticks;
-    if (!logarithmic_) {
+    if (!logarithmic_ || high_ < 10 * low_) {
       const double step = round_step((high_ - low_) / 5);
-      for (double tick = std::ceil(low_ / step) * step; tick <= high_ * (1 + 1e-12); tick += step)
-        ticks.push_back(tick);
+      for (double i = std::ceil(low_ / step); i * step <= high_ * (1 + 1e-12); ++i) ticks.push_back(i * step);
       return ticks;
     }
-    const int first = static_cast<int>(std::floor(std::log10(low_))),
-              last = static_cast<int>(std::ceil(std::log10(high_)));
-    const int step = std::max(1, (last - first + 7) / 8);
-    for (int power = first; power <= last; power += step) {
+    const int first = static_cast<int>(std::floor(std::log10(low_)));
+    const int last = static_cast<int>(std::ceil(std::log10(high_)));
+    for (int power = first; power <= last; power += std::max(1, (last - first + 7) / 8)) {
       for (const double factor : {1.0, 2.0, 5.0}) {
         const double tick = factor * std::pow(10.0, power);
         if ((factor == 1 || last - first <= 2) && tick >= low_ && tick <= high_) ticks.push_back(tick);

@@ -85,6 +85,11 @@ std::pair<double, double> colour_range(const std::vector<double>& stretches, std
 
 }  // namespace
 
+double time_of(const Scene& scene, int step) {
+  if (scene.time.integrator == scene::Integrator::quasi_static) return static_cast<double>(step) / scene.time.steps;
+  return step * scene.time.step;
+}
+
 std::string file_name(const std::string& scene_name) {
   std::string name = scene_name;
   for (char& c : name) {
@@ -122,13 +127,8 @@ FrameOutput::FrameOutput(const Scene& scene, const Model& model, fs::path folder
   for (const fs::path& file : files_in(folder_ / "frames")) {
     const std::optional<int> step = step_of(file);
     const bool ours = step && file.extension() == extension_ && file.filename().string().starts_with(name_ + "_");
-    if (ours) frames_.emplace_back(time_of(*step), "frames/" + file.filename().string());
+    if (ours) frames_.emplace_back(time_of(scene, *step), "frames/" + file.filename().string());
   }
-}
-
-double FrameOutput::time_of(int step) const {
-  if (scene_.time.integrator == scene::Integrator::quasi_static) return static_cast<double>(step) / scene_.time.steps;
-  return step * scene_.time.step;
 }
 
 bool FrameOutput::frame_is_due(int step) const {
@@ -147,7 +147,7 @@ bool FrameOutput::picture_is_due(int step) const {
 
 void FrameOutput::write_frame(const State& state) {
   if (extension_.empty()) return;
-  const double time = time_of(state.step);
+  const double time = time_of(scene_, state.step);
   const std::string file = fmt::format("frames/{}_{:05}{}", name_, state.step, extension_);
   if (extension_ == ".vtu") {
     write_vtu(folder_ / file, fields_.frame(state, time));
@@ -167,7 +167,7 @@ void FrameOutput::write_modes(const State& state, const std::vector<NaturalMode>
     const Vector shape = modes[k].shape / (largest > 0 ? largest : 1);
     const Field displacement{"displacement", 3, {shape.begin(), shape.end()}};
     write_vtu(folder_ / fmt::format("modes/{}_mode_{:05}.vtu", name_, k + 1),
-              {time_of(state.step), state.positions, model_.triangles, {displacement}, {}});
+              {time_of(scene_, state.step), state.positions, model_.triangles, {displacement}, {}});
   }
 }
 
@@ -178,7 +178,8 @@ std::string FrameOutput::write_picture(const State& state) const try {
   picture.triangle_values = fields_.largest_stretch(picture.positions);
   std::tie(picture.low, picture.high) = colour_range(picture.triangle_values, fields_.upper_limit());
   const bool is_static = scene_.time.integrator == scene::Integrator::quasi_static;
-  picture.title = fmt::format("{}, {:.4g} {}", scene_.name, time_of(state.step), is_static ? "of the load" : "s");
+  picture.title =
+      fmt::format("{}, {:.4g} {}", scene_.name, time_of(scene_, state.step), is_static ? "of the load" : "s");
   picture.value_name = "sigma max";
   picture.up = scene_.gravity.isZero() ? Vector3::Zero().eval() : Vector3(-scene_.gravity.normalized());
   if (scene_.output.view) picture.view_from = *scene_.output.view;

@@ -34,8 +34,6 @@ class FrameOutput {
   void write_index() const;
 
  private:
-  double time_of(int step) const;  // s; of static problems the load fraction
-
   const Scene& scene_;
   const Model& model_;
   std::filesystem::path folder_;
@@ -43,6 +41,9 @@ class FrameOutput {
   SurfaceFields fields_;
   std::vector<std::pair<double, std::string>> frames_;  // time and path in the folder
 };
+
+/// Time at the end of a step, s; of static problems the load fraction.
+double time_of(const Scene& scene, int step);
 
 /// The name of a scene with everything but letters, digits, '.', '-' and '_' replaced by '_'.
 std::string file_name(const std::string& scene_name);

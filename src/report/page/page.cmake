@@ -1,0 +1,50 @@
+# The page of the HTML report: fetches what package-lock.json names into the build folder, once per lock, and bundles it.
+# Sets REPORT_PAGE to the bundled file, and PAGE_BUILT; an empty file and OFF, with a warning, where that cannot be had
+# (docs/decisions/0016).
+set(PAGE_SOURCES ${CMAKE_CURRENT_LIST_DIR})
+set(PAGE_FOLDER ${PROJECT_BINARY_DIR}/page)
+set(PAGE_BUILT OFF)
+set(REPORT_PAGE ${PAGE_FOLDER}/no_page.html)
+file(WRITE ${REPORT_PAGE} "")
+
+set(PAGE_PROBLEM "")
+if(NOT TAUT_WITH_REPORT)
+  return()
+endif()
+find_program(NODE NAMES node nodejs)
+find_program(NPM npm)
+if(NODE)
+  execute_process(COMMAND ${NODE} --version OUTPUT_VARIABLE NODE_VERSION OUTPUT_STRIP_TRAILING_WHITESPACE)
+endif()
+if(NOT NODE OR NOT NPM)
+  set(PAGE_PROBLEM "node and npm were not found (Debian's packages nodejs and npm)")
+elseif(NODE_VERSION VERSION_LESS "v18")
+  set(PAGE_PROBLEM "node is ${NODE_VERSION}, expected 18 or later")
+else()
+  set(PAGE_PACKAGES ${PAGE_SOURCES}/package.json ${PAGE_SOURCES}/package-lock.json ${PAGE_SOURCES}/.npmrc)
+  set_property(DIRECTORY ${PROJECT_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PAGE_PACKAGES})
+  file(SHA256 ${PAGE_SOURCES}/package-lock.json LOCK)
+  if(NOT EXISTS ${PAGE_FOLDER}/${LOCK}.installed)
+    file(COPY ${PAGE_PACKAGES} DESTINATION ${PAGE_FOLDER})
+    message(STATUS "Fetching the libraries of the report's page with npm")
+    execute_process(COMMAND ${NPM} ci --ignore-scripts --no-audit --no-fund --prefer-offline
+      WORKING_DIRECTORY ${PAGE_FOLDER} RESULT_VARIABLE CODE OUTPUT_QUIET ERROR_VARIABLE ERRORS)
+    if(CODE EQUAL 0)
+      file(TOUCH ${PAGE_FOLDER}/${LOCK}.installed)
+    else()
+      set(PAGE_PROBLEM "npm ci failed: ${ERRORS}")
+    endif()
+  endif()
+endif()
+if(PAGE_PROBLEM)
+  message(WARNING "Building without the HTML report (--report): ${PAGE_PROBLEM}")
+  return()
+endif()
+
+set(PAGE_BUILT ON)
+set(REPORT_PAGE ${PAGE_FOLDER}/page.html)
+file(GLOB PAGE_FILES CONFIGURE_DEPENDS
+  ${PAGE_SOURCES}/*.js ${PAGE_SOURCES}/*.mjs ${PAGE_SOURCES}/*.css ${PAGE_SOURCES}/*.html)
+add_custom_command(OUTPUT ${REPORT_PAGE} COMMAND ${NODE} ${PAGE_SOURCES}/build.mjs ${REPORT_PAGE}
+  DEPENDS ${PAGE_FILES} ${PAGE_FOLDER}/${LOCK}.installed WORKING_DIRECTORY ${PAGE_FOLDER}
+  COMMENT "Bundling the report's page" VERBATIM)

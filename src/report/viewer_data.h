@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+
+#include "problems/scene.h"
+
+namespace taut {
+
+/// How much of a run the viewer gets, so that a browser still opens the page.
+struct ViewerLimits {
+  int frames = 60;                 ///< at most, evenly over the run, the first and the last included
+  long long vertices = 1'000'000;  ///< in all frames together; two frames are kept in any case
+};
+
+/// What the 3D viewer of a report shows of the run in `folder`, or null where that has no frames.
+///
+/// "vertices", "triangles", "positions" (box "low" and "high", m), "frames" (step and time), "fields" of triangles with
+/// their units and colour scale (the largest singular value; tension in N/m where the frames have it; the violation of
+/// each constraint, in its own units, as the model judges the positions), "layers" (ranges of triangles), "worst" (the
+/// elements that are worst in any of these frames), "spheres" and "pins", "up" and "view", "picture" (the run's last
+/// SVG) and "note", a sentence on what was left out. Arrays are {"type", "data"} with little-endian integers in
+/// packed_text(); positions and fields are fractions of their range in 16 bits, the highest number of a field standing
+/// for no value, and every frame but the first is the difference modulo 2^16 to the one before it.
+///
+/// Throws FileError or MeshError for a frame that is damaged or not of this scene, InputError for a scene that cannot
+/// be built.
+nlohmann::json viewer_data(const std::filesystem::path& folder, const Scene& scene, const ViewerLimits& limits = {});
+
+}  // namespace taut
