@@ -211,7 +211,9 @@ std::optional<Vector> ChartMaker::climb(const ChartPlan& plan, const PlannedRefe
   }
   reference.text =
       fmt::format("{}{} at {}", whose, ladder.solver, planned.refines ? rungs : ladder.rungs.front().value);
-  if (found.size() > 1) reference.estimated_error = measure(found[1], found[0]);
+  // Two solutions with the same bits tell nothing.
+  const double difference = found.size() > 1 ? measure(found[1], found[0]) : 0;
+  if (difference > 0) reference.estimated_error = difference;
   if (planned.refines) {
     reference.text += found.size() == 3 ? ", the first of them: their differences follow no order"
                                         : ", the first of them: too few for an order";
