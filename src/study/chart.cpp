@@ -190,6 +190,7 @@ std::optional<Vector> ChartMaker::climb(const ChartPlan& plan, const PlannedRefe
     if (!point.solved() || !end) break;
     found.push_back(*end);
     rungs += (rungs.empty() ? "" : ", ") + rung.value;
+    if (!planned.refines && found.size() > 1 && plan.measure(*end, found.front()) > 0) break;
   }
   if (found.empty()) return {};
   reference.solver = ladder.solver;
@@ -211,14 +212,14 @@ std::optional<Vector> ChartMaker::climb(const ChartPlan& plan, const PlannedRefe
   }
   reference.text =
       fmt::format("{}{} at {}", whose, ladder.solver, planned.refines ? rungs : ladder.rungs.front().value);
-  // Two solutions with the same bits tell nothing.
-  const double difference = found.size() > 1 ? measure(found[1], found[0]) : 0;
+  // Of tolerances the last differs, of refinements the second is the next coarser.
+  const double difference = measure(planned.refines && found.size() > 1 ? found[1] : found.back(), found.front());
   if (difference > 0) reference.estimated_error = difference;
   if (planned.refines) {
     reference.text += found.size() == 3 ? ", the first of them: their differences follow no order"
                                         : ", the first of them: too few for an order";
-  } else if (found.size() > 1) {
-    reference.text += ", compared with " + ladder.rungs[1].value;
+  } else if (difference > 0) {
+    reference.text += ", compared with " + reference.runs.back().value;
   }
   return found.front();
 }
