@@ -239,6 +239,9 @@ std::optional<Vector> ChartMaker::solve_reference(const ChartPlan& plan, const P
   reference.text = "no solver has solved the reference";
   for (const ReferenceLadder& ladder : planned.ladders) {
     if (stopped()) break;
+    const bool too_slow = !reference.runs.empty() && reference.runs.back().solver == ladder.solver &&
+                          reference.runs.back().status == "time_limit";
+    if (too_slow) continue;
     const std::optional<Vector> found = climb(plan, planned, ladder, reference);
     if (!found) continue;
     for (const std::string& solver : chart_.solvers) {
