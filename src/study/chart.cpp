@@ -190,6 +190,7 @@ std::optional<Vector> ChartMaker::climb(const ChartPlan& plan, const PlannedRefe
     if (!point.solved() || !end) break;
     found.push_back(*end);
     rungs += (rungs.empty() ? "" : ", ") + rung.value;
+    if (!planned.refines && found.size() > 1 && plan.measure(*end, found.front()) > 0) break;
   }
   if (found.empty()) return {};
   reference.solver = ladder.solver;
@@ -211,12 +212,14 @@ std::optional<Vector> ChartMaker::climb(const ChartPlan& plan, const PlannedRefe
   }
   reference.text =
       fmt::format("{}{} at {}", whose, ladder.solver, planned.refines ? rungs : ladder.rungs.front().value);
-  if (found.size() > 1) reference.estimated_error = measure(found[1], found[0]);
+  // Of tolerances the last differs, of refinements the second is the next coarser.
+  const double difference = measure(planned.refines && found.size() > 1 ? found[1] : found.back(), found.front());
+  if (difference > 0) reference.estimated_error = difference;
   if (planned.refines) {
     reference.text += found.size() == 3 ? ", the first of them: their differences follow no order"
                                         : ", the first of them: too few for an order";
-  } else if (found.size() > 1) {
-    reference.text += ", compared with " + ladder.rungs[1].value;
+  } else if (difference > 0) {
+    reference.text += ", compared with " + reference.runs.back().value;
   }
   return found.front();
 }
@@ -236,6 +239,9 @@ std::optional<Vector> ChartMaker::solve_reference(const ChartPlan& plan, const P
   reference.text = "no solver has solved the reference";
   for (const ReferenceLadder& ladder : planned.ladders) {
     if (stopped()) break;
+    const bool too_slow = !reference.runs.empty() && reference.runs.back().solver == ladder.solver &&
+                          reference.runs.back().status == "time_limit";
+    if (too_slow) continue;
     const std::optional<Vector> found = climb(plan, planned, ladder, reference);
     if (!found) continue;
     for (const std::string& solver : chart_.solvers) {

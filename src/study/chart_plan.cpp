@@ -153,7 +153,7 @@ class Planner {
     return order;
   }
 
-  /// Tighter tolerances: a hundred times, or ten times where that is not reached; the next gives the error.
+  /// Tighter tolerances: a hundred times, or ten times where that is not reached; looser ones tell the error.
   std::vector<ReferenceLadder> tightened(const std::string& solver, const KnobValue& value) const {
     double charted = smallest_tolerance(read(job_of(solver, value, {})));
     if (choice_.knob.kind == KnobKind::tolerance) {
@@ -165,7 +165,9 @@ class Planner {
     for (const double factor : {tighter, next_tighter}) {
       const double tolerance = std::max(charted / factor, tightest);
       ReferenceLadder& ladder = ladders.emplace_back(ReferenceLadder{solver, tolerance, {}});
-      for (const double rung : {tolerance, 10 * tolerance}) ladder.rungs.push_back(rung_of(solver, value, {}, rung));
+      // A solver may end with the same bits at several tolerances, of which the first that differs tells the error.
+      for (const double looser : {1.0, 10.0, 100.0, 1000.0})
+        ladder.rungs.push_back(rung_of(solver, value, {}, looser * tolerance));
     }
     return ladders;
   }

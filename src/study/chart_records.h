@@ -51,12 +51,12 @@ struct ChartReference {
   std::string group;  ///< KnobValue::label where each value poses another problem, else empty
   /// "closed form", "extrapolation", "solution", "none needed", or "missing"
   std::string kind = "missing";
-  std::string text;                             ///< a sentence that says what it is
-  std::string solver;                           ///< of a solution
-  std::vector<std::string> not_independent_of;  ///< charted solvers that are of the same method
-  std::optional<double> estimated_error;        ///< in the unit of the errors
-  std::optional<double> order;                  ///< of an extrapolation
-  std::vector<ChartPoint> runs;                 ///< all that were tried, the finest of each solver first
+  std::string text = "not solved before the chart was interrupted";  ///< what it is
+  std::string solver;                                                ///< of a solution
+  std::vector<std::string> not_independent_of;                       ///< charted solvers that are of the same method
+  std::optional<double> estimated_error;                             ///< in the unit of the errors
+  std::optional<double> order;                                       ///< of an extrapolation
+  std::vector<ChartPoint> runs;  ///< all that were tried, the finest of each solver first
 };
 
 /// Convergence within one step.

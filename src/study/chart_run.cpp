@@ -65,6 +65,7 @@ void take_run(const fs::path& folder, ChartPoint& point) try {
   if (!fs::exists(folder / "summary.json")) return;
   const StoredRun run = read_stored_run(folder);
   const RunSummary& s = run.summary;
+  point.steps_asked = s.steps_asked;
   point.steps_done = s.steps_done;
   point.steps_solved = s.steps_solved;
   point.counts = s.counts;
