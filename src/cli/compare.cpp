@@ -1,14 +1,11 @@
 #include "study/compare.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <cstdlib>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -16,6 +13,7 @@
 #include "cli/commands.h"
 #include "cli/progress.h"
 #include "cli/stop_signals.h"
+#include "cli/temporary_folder.h"
 #include "files/atomic_file.h"
 #include "report/compare_tables.h"
 #include "study/compare_job.h"
@@ -33,26 +31,6 @@ struct CompareArguments {
   int steps = 0, repeat = 1, threads = 1;
   double time_limit = 600, memory_limit = 8192;
   bool free = false, cold = false, resume = false, json = false, quiet = false;
-};
-
-/// A folder that is removed again.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (fs::temp_directory_path() / "taut_compare_XXXXXX").string();
-    if (!::mkdtemp(pattern.data())) throw std::runtime_error("cannot make a temporary directory");
-    path_ = pattern;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
 };
 
 CompareOptions options_of(const CompareArguments& arguments) {

@@ -64,6 +64,7 @@ int run_program(int argc, char** argv) {
   add_compare(program, code);
   add_modes(program, code);
   add_replay(program, code);
+  add_stress(program, code);
   add_compare_worker(program, code);
   try {
     program.parse(argc, argv);
