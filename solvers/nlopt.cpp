@@ -191,8 +191,9 @@ void check(nlopt_result code, nlopt_opt optimiser) {
   throw std::logic_error(std::string("NLopt refuses its arguments: ") + (text ? text : ""));
 }
 
-/// Runs NLopt from z = 0 and leaves the best point there.
+/// Runs NLopt from z = 0 and leaves the best point there; NLOPT_INVALID_ARGS where it would refuse to.
 nlopt_result optimise(const NloptOptions& options, Callbacks& callbacks, Vector& z) {
+  if (static_cast<Index>(callbacks.equalities.size()) > z.size()) return NLOPT_INVALID_ARGS;
   const Entry& chosen = entry(options.algorithm);
   const Optimiser optimiser = make(chosen.outer, z.size());
   callbacks.optimiser = optimiser.get();
@@ -299,6 +300,9 @@ void say_unsolved(nlopt_result code, const Budget& budget, Result& result) {
   } else if (code == NLOPT_MAXEVAL_REACHED) {
     result.status = Status::iteration_limit;
     result.message = "evaluations used up";
+  } else if (code == NLOPT_INVALID_ARGS) {
+    result.status = Status::stalled;
+    result.message = "more equations than unknowns, which NLopt refuses";
   } else {
     result.status = Status::stalled;
     result.message = says + (code > 0 ? ", the residuals do not agree" : "");
