@@ -112,6 +112,7 @@ struct AugmentedLagrangian::Run {
   Status inner(NewtonState& state);
   void update(const NewtonState& state);
   bool update_penalties();
+  bool penalise(double growth, double tolerance, NewtonState& state);
   bool closest_compromise(NewtonState& state);
   bool central_path();
   void loop();
@@ -252,12 +253,12 @@ double AugmentedLagrangian::Run::merit(const Residuals& r) const {
       {r.stationarity / t.stationarity, r.feasibility / t.feasibility, r.complementarity / t.complementarity});
 }
 
-/// Minimises the violation, with the energies as a weak tie-breaker, from state.x; true where that leaves it violated
-/// and stationary.
-bool AugmentedLagrangian::Run::closest_compromise(NewtonState& state) {
+/// Minimises the energies and a penalty on the violation, `growth` times that of the start, from state.x; until
+/// forces balance to `tolerance`; the slacks get the multipliers that belong to it. False where that fails by far.
+bool AugmentedLagrangian::Run::penalise(double growth, double tolerance, NewtonState& state) {
   for (std::size_t k = 0; k < work.slacks.size(); ++k) {
     work.slacks[k].set_multipliers(Vector::Zero(work.slacks[k].multipliers().size()));
-    work.slacks[k].set_penalty(1e3 * start_penalty[k]);
+    work.slacks[k].set_penalty(growth * start_penalty[k]);
   }
   double scale = 0;
   newton.minimise(
@@ -272,7 +273,7 @@ bool AugmentedLagrangian::Run::closest_compromise(NewtonState& state) {
         }
         work.equalities.put(now.multipliers, work.slacks.size(), probe.multipliers);
         scale = residuals(problem, probe).force_scale;
-        return now.nodal_norm <= 1e-4 * scale || result.counts.linear_solves >= options.max_newton;
+        return now.nodal_norm <= tolerance * scale || result.counts.linear_solves >= options.max_newton;
       },
       budget, result.counts, result.timings);
   for (EliminatedSlack& slack : work.slacks) {
@@ -280,7 +281,28 @@ bool AugmentedLagrangian::Run::closest_compromise(NewtonState& state) {
     slack.updated_multipliers(state.x, std::numeric_limits<double>::infinity(), stiff);
     slack.set_multipliers(stiff);
   }
-  return state.nodal_norm <= 1e-3 * scale;
+  return state.nodal_norm <= 10 * tolerance * scale;
+}
+
+/// Minimises the violation from state.x, with the energies as a weak tie-breaker; true where that leaves it violated
+/// and stationary: the residuals are then those of the compromise, in `judged`.
+///
+/// A penalty finite as it is, the energies violate feasible constraints, too, by lambda / mu. So a second one, a
+/// hundred times as large, has to leave the violation c as it is. Forces balance at both, mu J^T c = -grad f, and grad
+/// f is bounded, so that |J^T c| has fallen to a hundredth while |c| has not.
+bool AugmentedLagrangian::Run::closest_compromise(NewtonState& state) {
+  const auto violation = [&] {
+    result.x = state.x;
+    work.equalities.put(state.multipliers, work.slacks.size(), result.multipliers);
+    judged = residuals(problem, result);
+    return judged.feasibility;
+  };
+  if (!penalise(1e3, 1e-4, state)) return false;
+  const double first = violation();
+  if (first <= options.tolerances.feasibility) return false;
+  const bool balanced = penalise(1e5, 1e-6, state);
+  const double second = violation();
+  return balanced && second > 0.5 * first && second > options.tolerances.feasibility;
 }
 
 /// Tries the central path from the warm start; on success `result` and `judged` hold the solution, else the warm start
@@ -370,27 +392,24 @@ void AugmentedLagrangian::Run::loop() {
     const bool room = update_penalties();
     // A penalty fixed too low looks the same as an infeasible problem.
     if (options.fixed_penalty == 0 && (!room || without_progress >= 4)) {
-      const std::vector<Vector> bounded = best.multipliers;
-      if (closest_compromise(state)) {
-        result.x = state.x;
-        result.multipliers = bounded;
+      std::vector<double> grown;
+      for (const EliminatedSlack& slack : work.slacks) grown.push_back(slack.penalty());
+      const bool compromise = closest_compromise(state);
+      // A point that was much closer tells that there is more to gain.
+      const bool closest = best_judged.feasibility > 0.5 * judged.feasibility;
+      if (compromise && closest) {
+        result.multipliers = best.multipliers;
         work.equalities.put(state.multipliers, work.slacks.size(), result.multipliers);
         judged = residuals(problem, result);
-        // With a finite penalty the energies violate feasible constraints a little, too: a point that was much closer
-        // tells that there is more to gain.
-        const bool closest = best_judged.feasibility > 0.5 * judged.feasibility;
-        if (judged.feasibility > options.tolerances.feasibility && closest) {
-          return finish(Status::infeasible,
-                        "no nearby point satisfies the constraints; this is the closest compromise");
-        }
-        if (!closest) {
-          state.x = best.x;
-          state.multipliers = work.equalities.stacked(best.multipliers, work.slacks.size());
-          for (std::size_t k = 0; k < work.slacks.size(); ++k) {
-            work.slacks[k].set_multipliers(bounded[k]);
-            work.slacks[k].set_penalty(start_penalty[k]);
-          }
-        }
+        return finish(Status::infeasible, "no nearby point satisfies the constraints; this is the closest compromise");
+      }
+      for (std::size_t k = 0; k < work.slacks.size(); ++k) {
+        if (!closest) work.slacks[k].set_multipliers(best.multipliers[k]);
+        work.slacks[k].set_penalty(closest ? grown[k] : start_penalty[k]);
+      }
+      if (!closest) {
+        state.x = best.x;
+        state.multipliers = work.equalities.stacked(best.multipliers, work.slacks.size());
       }
       if (!room) return finish(Status::stalled, "penalty at its limit");
       without_progress = 0;
@@ -425,15 +444,18 @@ Result AugmentedLagrangian::solve(const Problem& problem, const WarmStart& warm,
                                                options_.equalities, options_.threads);
       analysed = true;
     }
+    const Index pivoted = workspace_->system->pivoted();
     Run run(options_, problem, budget, *workspace_);
     run.start(warm);
     run.loop();
     result = std::move(run.result);
+    if (analysed) ++result.counts.symbolic_analyses;
+    result.counts.pivoted_factorizations = workspace_->system->pivoted() - pivoted;
+    if (pivoted == 0 && result.counts.pivoted_factorizations > 0) ++result.counts.symbolic_analyses;
     result.force_scale = run.judged.force_scale;
   }
   result.timings.total = total;
   result.timings.analysis = analysis;
-  result.counts.symbolic_analyses = analysed ? 1 : 0;
   result.counts.matrix_allocations = analysed ? 1 : 0;
   return result;
 }

@@ -49,9 +49,8 @@ class QuasiDefiniteSystem final : public EqualitySystem {
   QuasiDefiniteSystem(const Assembly& assembly, const EqualityRows& equalities, const std::vector<int>& fixed);
   /// Of the last matrix on A dx = 0; nothing where it was singular.
   std::optional<Index> negative_curvatures() const { return negative_curvatures_; }
-  /// How many factorisations needed pivoting.
-  Index pivoted() const { return pivoted_; }
   Size size() const override;
+  Index pivoted() const override { return pivoted_; }
 
  private:
   bool factorize_penalised(double shift) override;

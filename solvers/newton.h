@@ -44,6 +44,8 @@ class NewtonSystem {
     std::size_t bytes = 0;
   };
   virtual Size size() const { return {}; }
+  /// How many factorisations so far needed pivoting.
+  virtual Index pivoted() const { return 0; }
 };
 
 /// Fixed variables substituted by the assembly itself, CHOLMOD in the order of its matrix; no equalities.

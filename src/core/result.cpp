@@ -39,6 +39,7 @@ Counts& Counts::operator+=(const Counts& other) {
   outer += other.outer;
   linear_solves += other.linear_solves;
   factorizations += other.factorizations;
+  pivoted_factorizations += other.pivoted_factorizations;
   symbolic_analyses += other.symbolic_analyses;
   matrix_allocations += other.matrix_allocations;
   function_evaluations += other.function_evaluations;

@@ -35,6 +35,7 @@ Json counts_json(const Counts& counts) {
   return {{"outer", counts.outer},
           {"linear_solves", counts.linear_solves},
           {"factorizations", counts.factorizations},
+          {"pivoted_factorizations", counts.pivoted_factorizations},
           {"symbolic_analyses", counts.symbolic_analyses},
           {"matrix_allocations", counts.matrix_allocations},
           {"function_evaluations", counts.function_evaluations}};

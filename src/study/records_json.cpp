@@ -17,6 +17,7 @@ Json counts_json(const Counts& counts) {
   return {{"outer", counts.outer},
           {"linear_solves", counts.linear_solves},
           {"factorizations", counts.factorizations},
+          {"pivoted_factorizations", counts.pivoted_factorizations},
           {"function_evaluations", counts.function_evaluations}};
 }
 
@@ -191,6 +192,7 @@ StepRecord step_of(const Json& json) {
   record.counts.outer = counts.at("outer");
   record.counts.linear_solves = counts.at("linear_solves");
   record.counts.factorizations = counts.at("factorizations");
+  record.counts.pivoted_factorizations = counts.value("pivoted_factorizations", 0L);
   record.counts.function_evaluations = counts.at("function_evaluations");
   record.seconds = {number(seconds.at("total")), number(seconds.at("assembly")), number(seconds.at("analysis")),
                     number(seconds.at("factorization")), number(seconds.at("solve"))};

@@ -35,6 +35,7 @@ Counts read_counts(const Json& json) {
   return {json.at("outer"),
           json.at("linear_solves"),
           json.at("factorizations"),
+          json.value("pivoted_factorizations", 0L),
           json.at("symbolic_analyses"),
           json.at("matrix_allocations"),
           json.at("function_evaluations")};

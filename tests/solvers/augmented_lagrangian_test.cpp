@@ -155,6 +155,32 @@ TEST(AugmentedLagrangian, SaysInfeasibleWherePinsPullTheClothBeyondItsLimit) {
   EXPECT_LT(result.counts.linear_solves, 200);
 }
 
+TEST(AugmentedLagrangian, DoesNotCallSlowMultipliersInfeasible) {
+  const int cells = 6;
+  const TriangleMesh mesh = make_grid(1, 1, cells, cells, Diagonals::alternating);
+  const std::vector<RestTriangle> triangles = rest_triangles(mesh.triangles, mesh.vertices);
+  OwnedProblem owned;
+  owned.problem.initial_guess = flatten(mesh.vertices);
+  std::vector<int> left;
+  Vector load = Vector::Zero(owned.problem.size());
+  for (int j = 0; j <= cells; ++j) {
+    left.push_back(j * (cells + 1));
+    load[3 * (j * (cells + 1) + cells)] = 10.0;
+  }
+  owned.pin(left);
+  owned.add(std::make_shared<DeadLoad>("pull", load));
+  owned.add(std::make_shared<Membrane>("membrane", triangles, MembraneLaw::stvk, Lame::plane_stress(1, 0), 1.0));
+  owned.add(std::make_shared<MatrixStrainLimit>(limit_on(triangles, 0, 1.05)));
+  // Violations fall by less than half in an update, and are not small at a thousand times these penalties either.
+  AugmentedLagrangianOptions options;
+  options.central_path.enabled = false;
+  options.penalty = 0.1;
+  options.penalty_growth = 1.1;
+  EXPECT_EQ(AugmentedLagrangian(options).solve(owned.problem, {}, {}).status, Status::iteration_limit);
+  options.penalty_growth = 2;
+  EXPECT_EQ(AugmentedLagrangian(options).solve(owned.problem, {}, {}).status, Status::solved);
+}
+
 TEST(AugmentedLagrangian, RestsAVertexOnTheFloor) {
   OwnedProblem owned;
   owned.problem.initial_guess = Vector{{0, 0, 1}};
