@@ -64,19 +64,40 @@ TextTable frontier_table(const StressAtlas& atlas) {
   return table;
 }
 
-TextTable method_table(const StressAtlas& atlas) {
-  TextTable table{{"method", "cells", "solved", "share", "honest failures", "false successes", "crashes", "time-outs"}};
-  for (const std::string& method : methods_of(atlas)) {
-    std::vector<StressCell> all;
-    for (const StressMap& map : atlas.maps) {
-      for (std::size_t k = 0; k < map.cells.size(); ++k) {
-        if (map.entry.methods[k] == method) all.insert(all.end(), map.cells[k].begin(), map.cells[k].end());
-      }
+/// The cells of a method, and those of the default one beside them (none where it was not run).
+struct Rows {
+  std::vector<StressCell> own, beside;
+};
+
+Rows cells_of(const StressAtlas& atlas, const std::string& method) {
+  Rows rows;
+  for (const StressMap& map : atlas.maps) {
+    const auto& methods = map.entry.methods;
+    const auto place = [&](const std::string& name) {
+      return static_cast<std::size_t>(std::find(methods.begin(), methods.end(), name) - methods.begin());
+    };
+    const std::size_t own = place(method), other = place(default_method);
+    if (own == methods.size()) continue;
+    for (std::size_t v = 0; v < map.entry.values.size(); ++v) {
+      if (map.cells[own][v].outcome == StressOutcome::not_applicable) continue;
+      rows.own.push_back(map.cells[own][v]);
+      if (other < methods.size()) rows.beside.push_back(map.cells[other][v]);
     }
-    const int cells = static_cast<int>(all.size()) - count(all, StressOutcome::not_applicable);
-    const auto number = [&all](StressOutcome outcome) { return std::to_string(count(all, outcome)); };
-    table.push_back({method, std::to_string(cells), number(StressOutcome::solved),
-                     cells == 0 ? "-" : fmt::format("{:.1f} %", 100.0 * count(all, StressOutcome::solved) / cells),
+  }
+  return rows;
+}
+
+TextTable method_table(const StressAtlas& atlas) {
+  TextTable table{{"method", "cells", "solved", "share", "the default solver there", "honest failures",
+                   "false successes", "crashes", "time-outs"}};
+  for (const std::string& method : methods_of(atlas)) {
+    const auto [own, beside] = cells_of(atlas, method);
+    const auto number = [&cells = own](StressOutcome outcome) { return std::to_string(count(cells, outcome)); };
+    const auto share = [](const std::vector<StressCell>& cells) {
+      if (cells.empty()) return std::string("-");
+      return fmt::format("{:.1f} %", 100.0 * count(cells, StressOutcome::solved) / static_cast<double>(cells.size()));
+    };
+    table.push_back({method, std::to_string(own.size()), number(StressOutcome::solved), share(own), share(beside),
                      number(StressOutcome::honest_failure), number(StressOutcome::false_success),
                      number(StressOutcome::crash), number(StressOutcome::timeout)});
   }
