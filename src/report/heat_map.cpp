@@ -41,7 +41,7 @@ std::string heat_map_svg(const Json& heat_map) {
   for (const std::string& value : values) longest = std::max(longest, value.size());
   const int column = static_cast<int>(8 * longest) + 14;
   const int bottom = top + row_height * static_cast<int>(methods.size());
-  const int width = std::max(names + column * static_cast<int>(values.size()) + margin, 700), height = bottom + 72;
+  const int width = std::max(names + column * static_cast<int>(values.size()) + margin, 730), height = bottom + 72;
   std::string text;
   const auto out = std::back_inserter(text);
   fmt::format_to(out,
@@ -76,7 +76,7 @@ std::string heat_map_svg(const Json& heat_map) {
                    "text-anchor=\"middle\" font-size=\"11\" fill=\"{}\">{}</text><text x=\"{}\" y=\"{}\">{}</text>\n",
                    x, bottom + 48, look.colour, x + 7, bottom + 59, look.ink, look.letter, x + 20, bottom + 60,
                    look.words);
-    x += 112;
+    x += 118;
   }
   return text + "</svg>\n";
 }
