@@ -260,18 +260,21 @@ double merit(const Residuals& r, const Tolerances& t) {
       {r.stationarity / t.stationarity, r.feasibility / t.feasibility, r.complementarity / t.complementarity});
 }
 
-/// Recovers multipliers for several ideas of "active" and keeps those that the residuals like best.
+/// Recovers multipliers for several ideas of "active" and keeps those that the residuals like best. Beside multipliers
+/// without bound, which least squares finds on rows that nearly depend on each other, any force looks balanced: they
+/// are left out.
 void judge_best(const Problem& problem, NonlinearProgram& program, const Callbacks& callbacks, const Vector& y,
                 const Tolerances& tolerances, Result& result) {
   result.x = program.expand(y);
   result.multipliers = program.multipliers(y, Vector::Zero(program.rows()));
   Residuals best = residuals(problem, result);
   if (!best.finite || program.rows() == 0) return;
+  const double largest_scale = 1e6 * best.force_scale;
   for (double distance : {1e-8, 1e-6, 1e-4}) {
     Result candidate = result;
     candidate.multipliers = program.multipliers(y, recovered(program, callbacks, y, distance));
     const Residuals judged = residuals(problem, candidate);
-    if (!(merit(judged, tolerances) < merit(best, tolerances))) continue;
+    if (!(judged.force_scale <= largest_scale && merit(judged, tolerances) < merit(best, tolerances))) continue;
     best = judged;
     result.multipliers = std::move(candidate.multipliers);
   }
