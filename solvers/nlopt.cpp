@@ -191,8 +191,9 @@ void check(nlopt_result code, nlopt_opt optimiser) {
   throw std::logic_error(std::string("NLopt refuses its arguments: ") + (text ? text : ""));
 }
 
-/// Runs NLopt from z = 0 and leaves the best point there.
+/// Runs NLopt from z = 0 and leaves the best point there; NLOPT_INVALID_ARGS where it would refuse to.
 nlopt_result optimise(const NloptOptions& options, Callbacks& callbacks, Vector& z) {
+  if (static_cast<Index>(callbacks.equalities.size()) > z.size()) return NLOPT_INVALID_ARGS;
   const Entry& chosen = entry(options.algorithm);
   const Optimiser optimiser = make(chosen.outer, z.size());
   callbacks.optimiser = optimiser.get();
@@ -259,18 +260,21 @@ double merit(const Residuals& r, const Tolerances& t) {
       {r.stationarity / t.stationarity, r.feasibility / t.feasibility, r.complementarity / t.complementarity});
 }
 
-/// Recovers multipliers for several ideas of "active" and keeps those that the residuals like best.
+/// Recovers multipliers for several ideas of "active" and keeps those that the residuals like best. Beside multipliers
+/// without bound, which least squares finds on rows that nearly depend on each other, any force looks balanced: they
+/// are left out.
 void judge_best(const Problem& problem, NonlinearProgram& program, const Callbacks& callbacks, const Vector& y,
                 const Tolerances& tolerances, Result& result) {
   result.x = program.expand(y);
   result.multipliers = program.multipliers(y, Vector::Zero(program.rows()));
   Residuals best = residuals(problem, result);
   if (!best.finite || program.rows() == 0) return;
+  const double largest_scale = 1e6 * best.force_scale;
   for (double distance : {1e-8, 1e-6, 1e-4}) {
     Result candidate = result;
     candidate.multipliers = program.multipliers(y, recovered(program, callbacks, y, distance));
     const Residuals judged = residuals(problem, candidate);
-    if (!(merit(judged, tolerances) < merit(best, tolerances))) continue;
+    if (!(judged.force_scale <= largest_scale && merit(judged, tolerances) < merit(best, tolerances))) continue;
     best = judged;
     result.multipliers = std::move(candidate.multipliers);
   }
@@ -299,6 +303,9 @@ void say_unsolved(nlopt_result code, const Budget& budget, Result& result) {
   } else if (code == NLOPT_MAXEVAL_REACHED) {
     result.status = Status::iteration_limit;
     result.message = "evaluations used up";
+  } else if (code == NLOPT_INVALID_ARGS) {
+    result.status = Status::stalled;
+    result.message = "more equations than unknowns, which NLopt refuses";
   } else {
     result.status = Status::stalled;
     result.message = says + (code > 0 ? ", the residuals do not agree" : "");

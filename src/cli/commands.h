@@ -34,6 +34,7 @@ void add_compare(CLI::App& program, int& code);
 void add_chart(CLI::App& program, int& code);
 void add_modes(CLI::App& program, int& code);
 void add_replay(CLI::App& program, int& code);
+void add_stress(CLI::App& program, int& code);
 void add_compare_worker(CLI::App& program, int& code);  // what compare starts; in no help
 
 /// The folder of the problems that come with the program: beside an installed program, or else in the sources.

@@ -6,11 +6,12 @@
 #include <iterator>
 #include <vector>
 
+#include "report/text_table.h"
+
 namespace taut {
 namespace {
 
 using Row = std::vector<std::string>;
-using Table = std::vector<Row>;
 
 std::string failures_of(const EntrySummary& summary) {
   std::string text;
@@ -42,33 +43,10 @@ Row row_of(const EntryRun& run) {
           fmt::format("{:.0f}", static_cast<double>(run.peak_memory_bytes) / 1e6)};
 }
 
-Table table_of(const ProblemComparison& problem) {
-  Table table{{"solver", "solved", "false", "failures", "residual", "dx", "df", "s/step", "solves/step", "MB"}};
+TextTable table_of(const ProblemComparison& problem) {
+  TextTable table{{"solver", "solved", "false", "failures", "residual", "dx", "df", "s/step", "solves/step", "MB"}};
   for (const EntryRun& run : problem.entries) table.push_back(row_of(run));
   return table;
-}
-
-std::string aligned(const Table& table) {
-  std::vector<std::size_t> widths(table.front().size(), 0);
-  for (const Row& row : table) {
-    for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
-  }
-  std::string text;
-  for (const Row& row : table) {
-    std::string line;
-    for (std::size_t k = 0; k < row.size(); ++k) line += fmt::format("{:<{}}  ", row[k], widths[k]);
-    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-  }
-  return text;
-}
-
-std::string markdown_of(const Table& table) {
-  std::string text;
-  for (std::size_t k = 0; k < table.size(); ++k) {
-    text += fmt::format("| {} |\n", fmt::join(table[k], " | "));
-    if (k == 0) text += fmt::format("|{}\n", fmt::join(Row(table[k].size(), "---|"), ""));
-  }
-  return text;
 }
 
 std::string headline(const ProblemComparison& problem, const Comparison& comparison) {
@@ -164,7 +142,7 @@ std::string compare_markdown(const Comparison& comparison) {
   const auto out = std::back_inserter(text);
   for (const ProblemComparison& problem : comparison.problems) {
     fmt::format_to(out, "\n## {}\n\n{}.\n\n{}", problem.name, headline(problem, comparison),
-                   markdown_of(table_of(problem)));
+                   markdown(table_of(problem)));
     const Row lines = remarks(problem);
     if (!lines.empty()) fmt::format_to(out, "\n");
     for (const std::string& line : lines) fmt::format_to(out, "- {}\n", line);

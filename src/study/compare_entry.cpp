@@ -30,6 +30,8 @@ void take_outcome(const ChildOutcome& child, const fs::path& folder, EntryRun& r
     run.outcome = "crash: " + signal_name(child.signal);
   } else if (child.end == ChildEnd::memory_limit || child.code == worker_out_of_memory) {
     run.outcome = "out_of_memory";
+  } else if (child.code == worker_refused) {
+    run.outcome = "refused";
   } else {
     run.outcome = child.code == worker_finished ? "finished" : "error";
   }

@@ -16,6 +16,7 @@ std::string job_text(const CompareJob& job) {
   json["states"] = job.states;
   json["records"] = job.records;
   json["cold"] = job.cold;
+  json["untimed"] = job.untimed;
   json["steps"] = job.steps;
   json["repeat"] = job.repeat;
   json["threads"] = job.threads;
@@ -35,6 +36,7 @@ CompareJob parse_job(const std::string& text) try {
   json.at("states").get_to(job.states);
   json.at("records").get_to(job.records);
   json.at("cold").get_to(job.cold);
+  json.at("untimed").get_to(job.untimed);
   json.at("steps").get_to(job.steps);
   json.at("repeat").get_to(job.repeat);
   json.at("threads").get_to(job.threads);

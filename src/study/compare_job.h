@@ -15,11 +15,14 @@ struct CompareJob {
   std::string states;    ///< folder of the states, relative to the job's; empty: follow the own trajectory
   bool records = false;  ///< follow the own trajectory, write its states to `states`, end at the first step not solved
   bool cold = false;     ///< no multipliers and penalties from the states
-  int steps = 1, repeat = 1, threads = 1;
-  double seconds = 0;                       ///< wall clock; 0: no limit
-  std::int64_t memory_bytes = 0;            ///< 0: no limit
-  std::string scene_hash, trajectory_hash;  ///< of the scene, and of the one whose trajectory gives the states
-  std::string version;                      ///< of the program
+  bool untimed = false;  ///< no solve ahead of the first step, and the first step not solved is the last
+  int steps = 1;         ///< 0: those of the problem
+  int repeat = 1, threads = 1;
+  double seconds = 0;             ///< wall clock; 0: no limit
+  std::int64_t memory_bytes = 0;  ///< 0: no limit
+  std::string scene_hash,
+      trajectory_hash;  ///< of the scene (empty: any), and of that whose trajectory gives the states
+  std::string version;  ///< of the program
 };
 
 /// The text of a job file. Two jobs with the same text have the same result but for the seconds.
@@ -38,7 +41,13 @@ inline constexpr const char* log_file = "log.txt";
 inline constexpr const char* outcome_file = "run.json";  // written last, by the parent
 
 /// How a worker process ends.
-enum WorkerExit { worker_finished = 0, worker_failed = 1, worker_out_of_time = 3, worker_out_of_memory = 4 };
+enum WorkerExit {
+  worker_finished = 0,
+  worker_failed = 1,
+  worker_refused = 2,  ///< the problem cannot be read or built
+  worker_out_of_time = 3,
+  worker_out_of_memory = 4
+};
 
 /// Carries out the job of a job file, in this process. Returns a WorkerExit; why it failed goes to standard error.
 int work(const std::filesystem::path& job);

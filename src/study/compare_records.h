@@ -20,7 +20,8 @@ struct EntryRun {
   Overrides overrides;
   Tolerances tolerance;
   int steps_asked = 0;
-  /// "finished", "time_limit", "out_of_memory", "crash: SIGSEGV", "error", "no_states", "interrupted"
+  /// "finished", "time_limit", "out_of_memory", "crash: SIGSEGV", "error", "refused", "no_states",
+  /// "interrupted"
   std::string outcome = "finished";
   std::string message;  ///< why it is not finished
   double seconds = 0;   ///< wall clock of the process

@@ -25,6 +25,7 @@ TrialOptions trial_options(const CompareJob& job) {
   TrialOptions options;
   options.repeat = job.repeat;
   options.cold = job.cold;
+  options.warm_up = !job.untimed;
   if (job.seconds > 0) {
     options.budget.deadline =
         Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(job.seconds));
@@ -40,14 +41,16 @@ State read_state(const fs::path& folder, int step) {
 int carry_out(const CompareJob& job, const fs::path& folder) {
   const TrialOptions options = trial_options(job);
   const Scene scene = read_scene(job.problem, job.overrides);
-  if (scene.hash != job.scene_hash) throw std::runtime_error(job.problem + " has changed since the comparison began");
+  if (!job.scene_hash.empty() && scene.hash != job.scene_hash)
+    throw std::runtime_error(job.problem + " has changed since the comparison began");
   const std::unique_ptr<Solver> solver = build_solver(scene, job.threads > 0 ? job.threads : this_machine().cores);
   StepTrials trials(scene, *solver, options);
   const bool own_trajectory = job.records || job.states.empty();
   const fs::path states = folder / job.states;
   fs::create_directories(folder / solutions_folder);
   LineFile lines(folder / trials_file);
-  for (int step = 0; step < job.steps; ++step) {
+  const int steps = job.steps > 0 ? job.steps : scene.time.steps;
+  for (int step = 0; step < steps; ++step) {
     if (options.budget.out_of_time()) return worker_out_of_time;
     const State state = own_trajectory ? trials.state() : read_state(states, step);
     if (job.records) write_checkpoint(step_file(states, step), {scene.hash, step, state_arrays(state), {}});
@@ -56,7 +59,8 @@ int carry_out(const CompareJob& job, const fs::path& folder) {
                      {scene.hash, trial.step, solution_arrays(trial.result, trials.model()), {}});
     lines.append(trial_line(trial));
     if (!own_trajectory) continue;
-    if (!trial.result.x.allFinite() || (job.records && trial.judged != Status::solved)) break;
+    const bool ends = (job.records || job.untimed) && trial.judged != Status::solved;
+    if (!trial.result.x.allFinite() || ends) break;
     trials.accept();
   }
   return options.budget.out_of_time() ? worker_out_of_time : worker_finished;
@@ -70,6 +74,9 @@ int work(const fs::path& job) {
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "out of memory\n");
     return worker_out_of_memory;
+  } catch (const InputError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return worker_refused;
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
     return worker_failed;

@@ -33,6 +33,9 @@ const std::vector<SolverEntry>& solver_entries() {
        {{"solver.method", "alternating"}, {"solver.max_outer", "10000"}}},
       {"ipopt", "interior point, by Ipopt", {{"solver.method", "ipopt"}}},
       {"nlopt", "sequential quadratic programming, by NLopt; small problems only", {{"solver.method", "nlopt"}}},
+      {"nlopt_lbfgs",
+       "NLopt's augmented Lagrangian over its limited-memory BFGS; small problems only",
+       {{"solver.method", "nlopt"}, {"solver.nlopt.algorithm", "auglag_lbfgs"}}},
   };
   return entries;
 }

@@ -71,7 +71,7 @@ StepTrial StepTrials::run(const State& state) {
     seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return result;
   };
-  if (!warmed_up_) solve(trial.warm_up_seconds);
+  if (options_.warm_up && !warmed_up_) solve(trial.warm_up_seconds);
   warmed_up_ = true;
   std::vector<Timings> phases;
   for (int k = 0; k < options_.repeat && (k == 0 || !options_.budget.out_of_time()); ++k) {

@@ -39,16 +39,17 @@ struct StepTrial {
 };
 
 struct TrialOptions {
-  int repeat = 1;     ///< how often each step is solved and timed
-  bool cold = false;  ///< no multipliers and penalties from the state
+  int repeat = 1;       ///< how often each step is solved and timed
+  bool cold = false;    ///< no multipliers and penalties from the state
+  bool warm_up = true;  ///< solve the first step once before anything is timed
   Budget budget = {};
 };
 
 /// Lets one solver solve time steps of a scene from given states, times it, and judges what it returns.
 ///
-/// Before the first step, that step is solved once without being timed, so that ordering, symbolic factor and cold
-/// caches are in nobody's times. Where the multipliers of a state do not fit the scene (they are of another form of a
-/// limit), those of the solver's own step before, if it was solved, take their place.
+/// Before the first step, that step is (if options.warm_up) solved once without being timed, so that ordering, symbolic
+/// factor and cold caches are in nobody's times. Where the multipliers of a state do not fit the scene (they are of
+/// another form of a limit), those of the solver's own step before, if it was solved, take their place.
 class StepTrials {
  public:
   /// Scene and solver are borrowed. Throws InputError for a scene that cannot be built, std::invalid_argument for a

@@ -138,6 +138,14 @@ TEST(Nlopt, NamesTheLimitItRanInto) {
   EXPECT_EQ(Nlopt().solve(cloth.owned.problem, {}, stopped).status, Status::interrupted);
 }
 
+TEST(Nlopt, SaysThatThereAreMoreEquationsThanUnknowns) {
+  // The flat sheet cannot carry its weight across, but multipliers of 1e14 N would make that look small.
+  SmallCloth cloth(small_cloth_constraint("inextensible"));
+  const Result result = Nlopt().solve(cloth.owned.problem, {}, {});
+  EXPECT_EQ(result.status, Status::stalled);
+  EXPECT_EQ(result.message, "more equations than unknowns, which NLopt refuses");
+}
+
 TEST(Nlopt, RefusesProblemsThatAreTooLarge) {
   OwnedProblem owned;
   owned.problem.initial_guess = Vector::Zero(3 * largest_nlopt_problem(NloptAlgorithm::slsqp) + 3);

@@ -6,6 +6,7 @@
 #include "study/compare_plan.h"
 #include "study/compare_records.h"
 #include "tests/files/temporary_folder.h"
+#include "tests/study/lying_solver.h"
 #include "tests/study/tiny_scene.h"
 
 namespace taut {
@@ -13,21 +14,6 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-/// Solves, moves a vertex, and says solved.
-class LyingSolver final : public Solver {
- public:
-  explicit LyingSolver(const Scene& scene) : honest_(build_solver(scene, 1)) {}
-  std::string name() const override { return "liar"; }
-  Result solve(const Problem& problem, const WarmStart& warm, const Budget& budget) override {
-    Result result = honest_->solve(problem, warm, budget);
-    result.x[2] += 0.01;
-    return result;
-  }
-
- private:
-  std::unique_ptr<Solver> honest_;
-};
 
 class CompareSteps : public FilesTest {
  protected:

@@ -58,6 +58,7 @@ inline std::shared_ptr<const Constraint> small_cloth_constraint(const std::strin
   std::vector<int> vertices;
   for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) vertices.push_back(v);
   if (kind == "matrix_limit") return std::make_shared<MatrixStrainLimit>(limit_on(triangles, 0.9, 1.1));
+  if (kind == "inextensible") return std::make_shared<MatrixStrainLimit>(limit_on(triangles, 1, 1));
   if (kind == "upper_matrix_limit") return std::make_shared<MatrixStrainLimit>(limit_on(triangles, 0, 1.02));
   if (kind == "singular_value_limit") return std::make_shared<SingularValueStrainLimit>(limit_on(triangles, 0.9, 1.1));
   if (kind == "half_space") {
