@@ -26,14 +26,14 @@ Status status_from_string(std::string_view text);
 
 /// How often a solver did what.
 struct Counts {
-  long outer = 0;                 ///< multiplier updates
-  long linear_solves = 0;         ///< Newton systems solved
-  long factorizations = 0;        ///< numeric factorisations, failed ones included
+  long outer = 0;                   ///< multiplier updates
+  long linear_solves = 0;           ///< Newton systems solved
+  long factorizations = 0;          ///< numeric factorisations, failed ones included
   long pivoted_factorizations = 0;  ///< those of them that needed pivoting, and are slower for it
-  long symbolic_analyses = 0;     ///< orderings and symbolic factorisations
-  long matrix_allocations = 0;    ///< sparse matrices or slot tables allocated
-  long function_evaluations = 0;  ///< values of the objective, with or without derivatives
-  double factor_flops = 0;        ///< floating-point operations of the factorisations; 0 where not known
+  long symbolic_analyses = 0;       ///< orderings and symbolic factorisations
+  long matrix_allocations = 0;      ///< sparse matrices or slot tables allocated
+  long function_evaluations = 0;    ///< values of the objective, with or without derivatives
+  double factor_flops = 0;          ///< floating-point operations of the factorisations; 0 where not known
   Counts& operator+=(const Counts& other);
 };
 

@@ -41,7 +41,7 @@ INSTANTIATE_TEST_SUITE_P(Problems, Refined,
                                          Case{"quilt", "quilt", 1, 20, {penalised, factorised, ipopt}},
                                          Case{"quilt", "quilt", 2, 20, {penalised, factorised}},
                                          Case{"quilt", "quilt", 3, 20, {penalised}},
-                                         Case{"quilt", "quilt", 3, 16, {iterative}}),
+                                         Case{"quilt", "quilt", 3, 17, {iterative}}),
                          [](const auto& instance) { return instance.param.name(); });
 
 }  // namespace
