@@ -15,12 +15,13 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/progress.h"
+#include "cli/report_option.h"
 #include "cli/stop_signals.h"
 #include "cli/temporary_folder.h"
 #include "files/atomic_file.h"
 #include "report/chart_report.h"
 #include "report/chart_tables.h"
-#include "report/command_text.h"
+#include "report/html_report.h"
 #include "study/chart_json.h"
 #include "study/solver_entries.h"
 
@@ -34,6 +35,7 @@ struct ChartArguments {
   int threads = 1, history = -1;
   double max_seconds = 600, memory_limit = 8192, accuracy = 0.01;
   bool resume = false, json = false, quiet = false;
+  ReportOption report;
 };
 
 const std::vector<ErrorKind> error_kinds{ErrorKind::position, ErrorKind::energy, ErrorKind::probe,
@@ -83,18 +85,6 @@ std::string progress_note(const ChartPoint& point) {
   return fmt::format("{}{}{}: {}", point.solver, point.value.empty() ? "" : " ", point.value, point.status);
 }
 
-/// What was typed, from the system.
-std::string command_line() {
-  const std::string bytes = read_bytes("/proc/self/cmdline");
-  std::vector<std::string> words{"taut"};
-  for (std::size_t begin = bytes.find('\0') + 1; begin < bytes.size();) {
-    const std::size_t end = std::min(bytes.find('\0', begin), bytes.size());
-    words.push_back(bytes.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return command_text(words);
-}
-
 int exit_code(const ChartData& data) {
   if (data.interrupted) return exit_interrupted;
   const bool no_reference = std::any_of(data.problems.begin(), data.problems.end(), [](const ProblemChart& problem) {
@@ -107,6 +97,7 @@ int exit_code(const ChartData& data) {
 int draw_chart(const ChartArguments& arguments) {
   if (arguments.resume && arguments.out.empty())
     throw UsageError("--resume needs --out DIR, the directory of the chart to go on with");
+  arguments.report.check();
   ChartOptions options = options_of(arguments);
   options.stop = &stop_on_signals();
   std::optional<TemporaryFolder> temporary;
@@ -123,11 +114,12 @@ int draw_chart(const ChartArguments& arguments) {
   if (progress && !data.interrupted) progress->finish();
   progress.reset();
 
-  const nlohmann::json report = chart_report(data, command_line());
+  const nlohmann::json report = chart_report(data, typed_command());
   write_atomically(options.folder / "report.json",
                    report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   write_atomically(options.folder / "chart.csv", chart_csv(data));
-  write_chart_pictures(options.folder, report);
+  write_report_pictures(options.folder, report);
+  if (arguments.report.wanted()) arguments.report.write(report, arguments.quiet);
 
   const std::string text = arguments.json    ? chart_text(data)
                            : arguments.quiet ? ""
@@ -167,7 +159,7 @@ constexpr const char* footer =
     "being an instance; correct is what is solved with an error of at most --accuracy.\n"
     "\n"
     "Files in DIR: chart.json (everything, with the command of each point), chart.csv, report.json, SVG charts, and\n"
-    "runs/ with what each `taut solve` wrote.\n"
+    "runs/ with what each `taut solve` wrote. --report DIR writes one HTML page, DIR/index.html, with all charts.\n"
     "\n"
     "Exit codes: 0 the chart is complete, whatever failed in it; 1 internal error; 2 wrong usage or input;\n"
     "3 complete, but a reference was not solved; 130 interrupted, finished runs are kept.\n"
@@ -235,6 +227,7 @@ void add_chart(CLI::App& program, int& code) {
       ->type_name("MB")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--out", arguments->out, "Write everything to this directory")->type_name("DIR");
+  add_report_option(*command, arguments->report);
   command->add_flag("--resume", arguments->resume, "Take over what is finished in DIR");
   command->add_flag("--json", arguments->json, "Print chart.json on standard output, and nothing else there");
   command->add_flag("--quiet", arguments->quiet, "No progress and no tables: errors only");

@@ -12,11 +12,11 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/progress.h"
+#include "cli/report_option.h"
 #include "cli/stop_signals.h"
 #include "cli/temporary_folder.h"
 #include "files/atomic_file.h"
-#include "report/command_text.h"
-#include "report/heat_map.h"
+#include "report/html_report.h"
 #include "report/stress_report.h"
 #include "study/machine.h"
 #include "study/stress_frontiers.h"
@@ -31,30 +31,19 @@ struct StressArguments {
   double max_seconds = 20;
   int threads = 0;
   bool quick = false, json = false, quiet = false;
+  ReportOption report;
 };
-
-std::string command_line(const StressArguments& arguments) {
-  std::vector<std::string> words{"taut", "stress"};
-  const auto add = [&words](const char* option, const std::string& value) {
-    if (!value.empty()) words.insert(words.end(), {option, value});
-  };
-  if (arguments.quick) words.push_back("--quick");
-  add("--method", fmt::format("{}", fmt::join(arguments.methods, ",")));
-  add("--entry", fmt::format("{}", fmt::join(arguments.entries, ",")));
-  add("--max-seconds", fmt::format("{:g}", arguments.max_seconds));
-  return command_text(words);
-}
 
 void write_files(const fs::path& folder, const StressAtlas& atlas, const nlohmann::json& report) {
   fs::create_directories(folder);
   write_atomically(folder / "report.json", report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   write_atomically(folder / "stress.md", stress_markdown(atlas));
   write_atomically(folder / "frontiers.json", frontiers_text(atlas));
-  for (const nlohmann::json& map : report.at("heat_maps"))
-    write_atomically(folder / (map.at("id").get<std::string>() + ".svg"), heat_map_svg(map));
+  write_report_pictures(folder, report);
 }
 
 int make_atlas(const StressArguments& arguments) {
+  arguments.report.check();
   const std::string stored = arguments.against.empty() ? "" : read_bytes(arguments.against);
   const TemporaryFolder temporary;
   StressOptions options;
@@ -81,8 +70,9 @@ int make_atlas(const StressArguments& arguments) {
   progress.reset();
   if (atlas.interrupted) return exit_interrupted;
 
-  const nlohmann::json report = stress_report(atlas, command_line(arguments));
+  const nlohmann::json report = stress_report(atlas, typed_command());
   if (!arguments.out.empty()) write_files(arguments.out, atlas, report);
+  if (arguments.report.wanted()) arguments.report.write(report, arguments.quiet);
   const std::string text = arguments.json ? report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"
                            : arguments.quiet ? ""
                                              : stress_terminal(atlas, arguments.out);
@@ -106,6 +96,7 @@ constexpr const char* footer =
     "time-out.\n"
     "\n"
     "Files in DIR: report.json, stress.md, frontiers.json, and an SVG heat map (knob x method) per entry.\n"
+    "--report DIR writes one HTML page, DIR/index.html, with all of them.\n"
     "\n"
     "Exit codes: 0 the atlas is complete; 1 internal error; 2 wrong usage or input; 3 --against found something "
     "worse;\n"
@@ -143,6 +134,7 @@ void add_stress(CLI::App& program, int& code) {
       ->check(CLI::Range(0, 255));
   command->add_option("--out", arguments->out, "Write the report and the heat maps to this directory")
       ->type_name("DIR");
+  add_report_option(*command, arguments->report);
   command
       ->add_option("--against", arguments->against,
                    "Exit code 3 where something is worse than this frontiers.json says, or where the default solver "

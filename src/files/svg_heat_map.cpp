@@ -22,10 +22,13 @@ void check(const HeatMap& map) {
 }
 
 std::string drawn_cell(const HeatMap::Cell& cell, double x, double y) {
+  const std::string note = cell.note.empty() ? "" : "<title>" + xml_escaped(cell.note) + "</title>";
   return fmt::format(
-      "<rect x=\"{:.0f}\" y=\"{:.0f}\" width=\"{}\" height=\"{}\" fill=\"{}\" stroke=\"white\"/><text x=\"{:.0f}\" "
-      "y=\"{:.0f}\" text-anchor=\"middle\" fill=\"white\">{}</text>\n",
-      x, y, cell_width, cell_height, xml_escaped(cell.colour), x + cell_width / 2, y + 19, xml_escaped(cell.sign));
+      "<g>{}<rect x=\"{:.0f}\" y=\"{:.0f}\" width=\"{}\" height=\"{}\" fill=\"{}\" stroke=\"white\"/><text "
+      "x=\"{:.0f}\" "
+      "y=\"{:.0f}\" text-anchor=\"middle\" fill=\"white\">{}</text></g>\n",
+      note, x, y, cell_width, cell_height, xml_escaped(cell.colour), x + cell_width / 2, y + 19,
+      xml_escaped(cell.sign));
 }
 
 }  // namespace

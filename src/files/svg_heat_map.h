@@ -12,6 +12,7 @@ namespace taut {
 struct HeatMap {
   struct Cell {
     std::string colour, sign;
+    std::string note = {};  ///< shown under the pointer
   };
   struct Kind {
     Cell cell;

@@ -3,13 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "files/svg_chart.h"
 #include "report/chart_tables.h"
 #include "report/command_text.h"
 #include "study/pareto.h"
@@ -217,32 +214,6 @@ Json points_table(const ProblemChart& problem, const std::string& name) {
       {"rows", rows}};
 }
 
-Chart picture_of(const Json& json) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  const auto axis_of = [](const Json& one) { return Chart::Axis{one.at("label"), one.at("log")}; };
-  Chart picture;
-  picture.title = json.at("title");
-  picture.x = axis_of(json.at("x"));
-  picture.y = axis_of(json.at("y"));
-  // Curves with very many points are told apart without marks.
-  constexpr std::size_t most_marks = 60;
-  for (const Json& series : json.at("series")) {
-    Chart::Line& line = picture.lines.emplace_back();
-    line.name = series.at("name");
-    line.joined = series.at("line");
-    const Json& points = series.at("points");
-    const bool marked = !points.empty() && points.size() <= most_marks && points[0].contains("label");
-    for (const Json& point : points) {
-      line.x.push_back(point.at("x"));
-      line.y.push_back(point.at("y").is_number() ? point["y"].get<double>() : infinity);
-      if (marked)
-        line.marks.push_back(point.value("status", "solved") == "solved" ? Chart::Mark::filled : Chart::Mark::hollow);
-    }
-  }
-  if (json.contains("front")) picture.front = json["front"].get<std::vector<std::array<double, 2>>>();
-  return picture;
-}
-
 }  // namespace
 
 Json chart_report(const ChartData& chart, const std::string& command) {
@@ -268,15 +239,6 @@ Json chart_report(const ChartData& chart, const std::string& command) {
     report["tables"].push_back(points_table(problem, name));
   }
   return report;
-}
-
-std::vector<std::filesystem::path> write_chart_pictures(const std::filesystem::path& folder, const Json& report) {
-  std::vector<std::filesystem::path> files;
-  for (const Json& chart : report.at("charts")) {
-    files.push_back(folder / (chart.at("id").get<std::string>() + ".svg"));
-    write_chart(files.back(), picture_of(chart));
-  }
-  return files;
 }
 
 }  // namespace taut

@@ -63,6 +63,7 @@ std::string page_of(const Json& report) {
 Chart::Axis axis_of(const Json& axis) { return {axis.at("label"), axis.value("log", false)}; }
 
 Chart chart_of(const Json& json) {
+  constexpr std::size_t most_marks = 60;  // curves with more points are told apart without
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Chart chart;
   chart.title = json.at("title");
@@ -72,11 +73,14 @@ Chart chart_of(const Json& json) {
     Chart::Line& line = chart.lines.emplace_back();
     line.name = series.at("name");
     line.joined = series.value("line", false);
-    for (const Json& point : series.at("points")) {
+    const Json& points = series.at("points");
+    const bool marked = points.size() <= most_marks;
+    for (const Json& point : points) {
       if (!point.at("x").is_number()) continue;
       line.x.push_back(point["x"]);
       line.y.push_back(point.at("y").is_number() ? point["y"].get<double>() : infinity);
-      line.marks.push_back(point.value("status", "solved") == "solved" ? Chart::Mark::filled : Chart::Mark::hollow);
+      if (marked)
+        line.marks.push_back(point.value("status", "solved") == "solved" ? Chart::Mark::filled : Chart::Mark::hollow);
     }
   }
   if (json.contains("front")) chart.front = json["front"].get<std::vector<std::array<double, 2>>>();
@@ -92,6 +96,7 @@ HeatMap heat_map_of(const Json& json) {
       const std::string outcome = cell.at("outcome");
       if (!outcomes.contains(outcome)) throw std::invalid_argument("report: there is no outcome '" + outcome + "'");
       cells.push_back(outcomes.at(outcome).cell);
+      cells.back().note = cell.value("text", "");
       if (present.insert(outcome).second) map.legend.push_back(outcomes.at(outcome));
     }
   }
@@ -119,13 +124,11 @@ fs::path picture_path(const fs::path& folder, const Json& part) {
 
 bool has_report_page() { return *report_page_text != '\0'; }
 
-std::vector<fs::path> write_html_report(const fs::path& folder, const Json& report) try {
-  if (!has_report_page())
-    throw std::runtime_error("this build has no page for reports: npm was missing when it was built");
+std::vector<fs::path> write_report_pictures(const fs::path& folder, const Json& report) try {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw FileError(folder, "cannot be created: " + error.message());
-  std::vector<fs::path> files{folder / "index.html"};
+  std::vector<fs::path> files;
   for (const Json& chart : report.value("charts", Json::array())) {
     files.push_back(picture_path(folder, chart));
     write_chart(files.back(), chart_of(chart));
@@ -134,7 +137,17 @@ std::vector<fs::path> write_html_report(const fs::path& folder, const Json& repo
     files.push_back(picture_path(folder, map));
     write_heat_map(files.back(), heat_map_of(map));
   }
+  return files;
+} catch (const Json::exception& error) {
+  throw std::invalid_argument(std::string("report: ") + error.what());
+}
+
+std::vector<fs::path> write_html_report(const fs::path& folder, const Json& report) try {
+  if (!has_report_page())
+    throw std::runtime_error("this build has no page for reports: npm was missing when it was built");
+  std::vector<fs::path> files = write_report_pictures(folder, report);
   for (const Json& table : report.value("tables", Json::array())) check_table(table);
+  files.insert(files.begin(), folder / "index.html");
   write_atomically(files.front(), page_of(report));
   return files;
 } catch (const Json::exception& error) {

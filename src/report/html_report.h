@@ -9,8 +9,13 @@ namespace taut {
 /// True where this build holds the page, which needs npm (docs/decisions/0016).
 bool has_report_page();
 
-/// Writes `folder`/index.html, one page that needs no network, and a static SVG for each chart and heat map beside it,
-/// named after its id. Returns the files, the page first.
+/// Writes a static SVG for each chart and heat map of `report`, named after its id, and returns the files. Throws as
+/// write_html_report().
+std::vector<std::filesystem::path> write_report_pictures(const std::filesystem::path& folder,
+                                                         const nlohmann::json& report);
+
+/// Writes `folder`/index.html, one page that needs no network, and the pictures beside it. Returns the files, the page
+/// first.
 ///
 /// `report` may have: "title", "command", "version", "machine" (an object); "summary" (sentences); "settings" (any
 /// JSON); "charts" ({"id", "title", "x" and "y" {"label", "log"}, "series" [{"name", "line", "points" [{"x", "y",

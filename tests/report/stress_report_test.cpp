@@ -5,7 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "report/heat_map.h"
+#include "files/atomic_file.h"
+#include "report/html_report.h"
+#include "tests/files/temporary_folder.h"
 
 namespace taut {
 namespace {
@@ -51,12 +53,16 @@ TEST(StressReport, SharesAreOfTheCellsWhereAMethodApplies) {
   EXPECT_THAT(text, HasSubstr("| knob | 2 | ipopt | a < b | a mechanism |"));
 }
 
-TEST(HeatMap, IsAnSvgWithEveryOutcomeAsLetterAndTooltip) {
-  const std::string svg = heat_map_svg(stress_report(small_atlas(), "")["heat_maps"].at(0));
+class StressPictures : public FilesTest {};
+
+TEST_F(StressPictures, HaveASignAndATooltipForEveryCell) {
+  const auto files = write_report_pictures(path("out"), stress_report(small_atlas(), ""));
+  ASSERT_EQ(files.size(), 1u);
+  const std::string svg = read_bytes(files[0]);
   EXPECT_THAT(svg, HasSubstr("A &lt;knob&gt;"));
   EXPECT_THAT(svg, HasSubstr("<title>a &lt; b</title>"));
-  EXPECT_THAT(svg, HasSubstr(">h</text></g>"));
-  EXPECT_THAT(svg, Not(HasSubstr(">F</text></g>")));
+  EXPECT_THAT(svg, HasSubstr("○</text></g>"));
+  EXPECT_THAT(svg, Not(HasSubstr("✗</text></g>")));
   EXPECT_THAT(svg, HasSubstr("time.step, s"));
 }
 
