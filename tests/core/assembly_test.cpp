@@ -115,6 +115,15 @@ void expect_dense_sum(const std::vector<const Energy*>& energies, const Vector& 
   }
 }
 
+bool made_of_vertices(const Stencils& stencils) {
+  for (Index element = 0; element < stencils.count(); ++element) {
+    for (int k = 0; k < stencils.width(); ++k) {
+      if (stencils[element][k] % 3 != k % 3) return false;
+    }
+  }
+  return stencils.width() % 3 == 0;
+}
+
 /// All energies on the specimen sheet, two of each: those share their elements.
 struct Sheet {
   std::vector<std::shared_ptr<const Energy>> owned;
@@ -123,7 +132,9 @@ struct Sheet {
   Sheet() {
     for (const EnergySpecimen& specimen : energy_specimens()) {
       if (specimen.posed(Pose::stretched).size() != x.size()) continue;  // on another mesh
-      owned.push_back(specimen.make());
+      const std::shared_ptr<const Energy> energy = specimen.make();
+      if (!made_of_vertices(energy->stencils())) continue;  // modes
+      owned.push_back(energy);
       energies.push_back(owned.back().get());
     }
     for (const auto& energy : owned) energies.push_back(energy.get());

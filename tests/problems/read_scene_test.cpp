@@ -280,7 +280,7 @@ TEST_F(ReadScene, HashSeesOnlyWhatChangesTheResult) {
 TEST_F(ReadScene, EveryCatalogueFileIsAScene) {
   int count = 0;
   for (const auto& entry : fs::recursive_directory_iterator(TAUT_CATALOGUE)) {
-    if (entry.path().extension() != ".json") continue;
+    if (entry.path().extension() != ".json" || entry.path().filename() == "atlas.json") continue;  // of taut stress
     const Scene scene = read_scene(entry.path());
     EXPECT_EQ(scene.name, entry.path().stem().string());
     EXPECT_TRUE(!scene.constraints.empty() || scene.time.frequencies > 0) << scene.name;

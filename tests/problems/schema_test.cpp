@@ -106,7 +106,7 @@ TEST(Schema, UsesOnlyKeywordsThatOurCheckKnows) {
 TEST(Schema, EveryCatalogueFilePassesOursAndValijson) {
   std::set<std::string> names;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(TAUT_CATALOGUE)) {
-    if (entry.path().extension() != ".json") continue;
+    if (entry.path().extension() != ".json" || entry.path().filename() == "atlas.json") continue;  // of taut stress
     std::ifstream stream(entry.path());
     Json document = parse_strict(std::string(std::istreambuf_iterator<char>(stream), {}), entry.path());
     EXPECT_TRUE(oracle_accepts(document)) << entry.path();
