@@ -27,7 +27,7 @@ Json axis(const std::string& label, bool log = true) { return {{"label", label},
 std::string error_label(ErrorKind kind) {
   switch (kind) {
     case ErrorKind::position:
-      return "largest distance at the end / diagonal of the scene";
+      return "distance at the end / size";
     case ErrorKind::energy:
       return "error of the energy at the end, relative";
     case ErrorKind::probe:
