@@ -26,6 +26,7 @@ class ChartCommand : public FilesTest {
   std::string out() const { return path("out").string(); }
   Json data() const { return Json::parse(read_bytes(path("out") / "chart.json")); }
   Json problem() const { return data()["problems"][0]; }
+  Json points() const { return problem()["points"]; }
   bool has(const std::string& file) const { return std::filesystem::exists(path("out") / file); }
 
   const std::vector<std::string> cloth_{"hanging_cloth",
@@ -131,13 +132,13 @@ TEST_F(ChartCommand, ALimitEndsARunAndNotTheChart) {
       cloth({"--solvers", "multiplier_loop", "--memory-limit", "1", "--error", "violation"});
   large[4] = "time.steps=100";
   ASSERT_EQ(chart(large), 0) << log();
-  for (const Json& point : problem()["points"]) EXPECT_EQ(point["status"], "out_of_memory");
+  for (const Json& point : points()) EXPECT_EQ(point["status"], "out_of_memory");
 }
 
 TEST_F(ChartCommand, AReferenceThatNobodySolvesExitsWithThree) {
   EXPECT_EQ(chart(cloth({"--solvers", "multiplier_loop", "--max-seconds", "1e-6", "--history", "0"})), 3) << log();
   EXPECT_EQ(problem()["references"][0]["kind"], "missing");
-  for (const Json& point : problem()["points"]) EXPECT_EQ(point["status"], "time_limit");
+  for (const Json& point : points()) EXPECT_EQ(point["status"], "time_limit");
 }
 
 TEST_F(ChartCommand, SeveralProblemsHaveProfilesAndMeans) {
@@ -159,11 +160,11 @@ TEST_F(ChartCommand, ResumesAndRefusesWhatIsNotItsOwn) {
   const std::vector<std::string> quick =
       cloth({"--solvers", "multiplier_loop", "--error", "violation", "--history", "0"});
   ASSERT_EQ(chart(quick), 0) << log();
-  for (const Json& point : problem()["points"]) EXPECT_EQ(point["resumed"], false);
+  for (const Json& point : points()) EXPECT_EQ(point["resumed"], false);
   std::vector<std::string> again = quick;
   again.push_back("--resume");
   ASSERT_EQ(chart(again), 0) << log();
-  for (const Json& point : problem()["points"]) EXPECT_EQ(point["resumed"], true);
+  for (const Json& point : points()) EXPECT_EQ(point["resumed"], true);
   std::vector<std::string> elsewhere = quick;
   elsewhere[8] = path(".").string();
   EXPECT_EQ(chart(elsewhere), 2);
