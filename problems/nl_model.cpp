@@ -226,10 +226,12 @@ double NlModel::evaluate(int function, const double* x, double* gradient, double
 
 void NlModel::write_solution(const std::string& message, int code, const Vector& x, const Vector& dual) const {
   ASL* asl = data_->asl;
+  const std::filesystem::path path = data_->stub.string() + ".sol";
+  std::error_code missing;
+  std::filesystem::remove(path, missing);  // an older one would hide that this one cannot be written
   solve_result_num = code;
   Vector primal = x, multipliers = dual;
   write_sol(const_cast<char*>(message.c_str()), primal.data(), multipliers.data(), nullptr);
-  const std::filesystem::path path = data_->stub.string() + ".sol";
   if (!std::filesystem::exists(path)) throw FileError(path, "cannot be written");
 }
 

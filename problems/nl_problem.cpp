@@ -75,6 +75,7 @@ class NlRow final : public Constraint {
   }
   double violation(Index, const double* x) const override {
     const double value = model_.evaluate(row_, x, nullptr, nullptr);
+    if (std::isnan(value)) return value;  // a comparison with it would say that nothing is violated
     return std::max({0.0, model_.row_lower()[row_] - value, value - model_.row_upper()[row_]});
   }
   std::string element_name(Index) const override { return "row " + name(); }
@@ -128,6 +129,25 @@ void check_width(const NlModel& model, int function, const std::string& what) {
                      ", allowed: " + std::to_string(max_stencil_width));
 }
 
+/// Bounds that cross, and rows without variables that do not hold, are no problem that a solver could be given.
+void check_bounds(const NlModel& model) {
+  const auto check = [&](const std::string& what, double lower, double upper) {
+    if (lower > upper)
+      throw InputError(model.name() + ".nl: found a lower bound above the upper one in " + what +
+                       ", which no point satisfies");
+  };
+  for (int i = 0; i < model.variables(); ++i)
+    check("variable " + model.variable_name(i), model.lower()[i], model.upper()[i]);
+  for (int row = 0; row < model.rows(); ++row) {
+    check("row " + model.row_name(row), model.row_lower()[row], model.row_upper()[row]);
+    if (!model.variables_of(row).empty()) continue;
+    const double value = model.evaluate(row, nullptr, nullptr, nullptr);
+    if (value < model.row_lower()[row] || value > model.row_upper()[row])
+      throw InputError(model.name() + ".nl: found row " + model.row_name(row) +
+                       " without variables and outside its bounds, which no point changes");
+  }
+}
+
 }  // namespace
 
 NlProblem::NlProblem(const NlModel& model) : model_(model) {
@@ -135,6 +155,7 @@ NlProblem::NlProblem(const NlModel& model) : model_(model) {
   problem_.node_size = 1;
   problem_.topology = new_topology();
   problem_.initial_guess = model.start();
+  check_bounds(model);
   std::vector<double> fixed;
   for (int i = 0; i < model.variables(); ++i) {
     const double lower = model.lower()[i], upper = model.upper()[i];

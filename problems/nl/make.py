@@ -73,7 +73,7 @@ def write(name, bounds, start, objective=None, rows=(), maximise=False):
     if rows:
         text += ["r"] + [bound(row[2], row[3]) for row in rows]
     text += ["b"] + [bound(*pair) for pair in bounds]
-    if n > 1:
+    if n > 1 or rows:
         counts = [sum(1 for column in columns if i in column) for i in range(n)]
         text += [f"k{n - 1}"] + [str(sum(counts[: i + 1])) for i in range(n - 1)]
     for i, column in enumerate(columns):

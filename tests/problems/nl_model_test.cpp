@@ -134,5 +134,31 @@ TEST_F(NlModelTest, RefusesWhatItCannotServeInOneLine) {
   EXPECT_THROW(NlModel(models / "not_there.nl"), InputError);
 }
 
+TEST_F(NlModelTest, BoundsThatCrossAreRefusedByName) {
+  std::string text = text_of(models / "range_rows.nl");
+  const std::string row = "\n0 1 2\n";
+  ASSERT_NE(text.find(row), text.npos);
+  text.replace(text.find(row), row.size(), "\n0 2 1\n");
+  const NlModel model(write(text));
+  try {
+    const NlProblem posed(model);
+    FAIL() << "posed";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("lower bound above the upper one in row"));
+  }
+}
+
+TEST_F(NlModelTest, OutsideItsDomainARowIsNotSatisfied) {
+  // min x0 with log(x0) >= 0.
+  const NlModel model(
+      write("g3 1 1 0\n 1 1 1 0 0 0\n 1 0\n 0 0\n 1 0 0\n 0 0 0 1\n 0 0 0 0 0\n 1 1\n 0 0\n"
+            " 0 0 0 0 0\nC0\no43\nv0\nO0 0\nn0\nx1\n0 1\nr\n2 0\nb\n3\nk0\nJ0 1\n0 0\nG0 1\n0 1\n"));
+  const NlProblem posed(model);
+  const double outside = -1, inside = 0.5;
+  const Constraint& row = *posed.problem().constraints[0];
+  EXPECT_TRUE(std::isnan(row.violation(0, &outside)));
+  EXPECT_DOUBLE_EQ(row.violation(0, &inside), std::log(2));
+}
+
 }  // namespace
 }  // namespace taut
