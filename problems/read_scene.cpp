@@ -104,6 +104,7 @@ void check_readable(const std::filesystem::path& file) {
 Scene read_scene(const std::filesystem::path& file, const Overrides& overrides) {
   std::string source = file.string();
   check_readable(file);
+  if (file.extension() == ".nl") throw InputError(source + ": is an optimisation model, which taut solve alone takes");
   const Document schema = Document::parse(problem_schema());
 
   Document document = parse_strict(file_bytes(file), source);
