@@ -59,6 +59,11 @@ void Box::project(Index /*element*/, const double* z, double* nearest, double* d
   }
 }
 
+bool Box::contains_ball(Index /*element*/, const double* z, double radius) const {
+  return std::all_of(z, z + dimension_,
+                     [&](double value) { return value - radius >= lower_ && value + radius <= upper_; });
+}
+
 void Box::project_smoothed(Index /*element*/, const double* z, double epsilon, double* nearest, double* inverse,
                            double* rate) const {
   std::fill_n(inverse, dimension_ * dimension_, 0.0);
@@ -114,6 +119,12 @@ void SpectralBox::project(Index /*element*/, const double* z, double* nearest, d
     Eigen::Map<Matrix3>{derivative} =
         slope1 * e1 * e1.transpose() + slope2 * e2 * e2.transpose() + omega * e12 * e12.transpose();
   }
+}
+
+/// No eigenvalue moves by more than the matrix does, in Frobenius' norm (Weyl).
+bool SpectralBox::contains_ball(Index /*element*/, const double* z, double radius) const {
+  const Eigen2 pair = eigen2(z[0], z[1] / std::numbers::sqrt2, z[2]);
+  return pair.values[1] - radius >= lower_ && pair.values[0] + radius <= upper_;
 }
 
 void SpectralBox::project_smoothed(Index /*element*/, const double* z, double epsilon, double* nearest, double* inverse,

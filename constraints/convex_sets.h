@@ -11,6 +11,7 @@ class Box final : public ConvexSet {
   Box(int dimension, double lower, double upper);
   int dimension() const override { return dimension_; }
   void project(Index element, const double* z, double* nearest, double* derivative) const override;
+  bool contains_ball(Index element, const double* z, double radius) const override;
   void project_smoothed(Index element, const double* z, double epsilon, double* nearest, double* inverse,
                         double* rate) const override;
   int smooth_rows() const override { return dimension_; }
@@ -31,6 +32,7 @@ class SpectralBox final : public ConvexSet {
   SpectralBox(double lower, double upper);
   int dimension() const override { return 3; }
   void project(Index element, const double* z, double* nearest, double* derivative) const override;
+  bool contains_ball(Index element, const double* z, double radius) const override;
   void project_smoothed(Index element, const double* z, double epsilon, double* nearest, double* inverse,
                         double* rate) const override;
   /// Each finite limit gives tr A >= 0 and det A >= 0, with A = (upper I - z)/s or (z - lower I)/s and s the larger of

@@ -101,6 +101,7 @@ AugmentedLagrangianOptions augmented_lagrangian_options(const Scene& scene, int 
   options.equalities = scene.solver.equalities;
   options.null_space = scene.solver.method == scene::SolverMethod::null_space;
   options.inner_tolerance_factor = scene.solver.inner_tolerance_factor;
+  options.screening = scene.solver.screening;
   if (scene.solver.longest_step > 0)
     options.newton.longest_step = options.central_path.longest_step = scene.solver.longest_step;
   options.max_outer = scene.solver.max_outer;

@@ -269,6 +269,7 @@ struct Solver {
   int max_newton = 1000;  ///< per step
   double inner_tolerance_factor = 0.5;
   double longest_step = 0;  ///< 0: no limit
+  double screening = 4;     ///< 0: none
   int starts = 1;           ///< of a model
   bool conjugate_gradients = false;
   EqualityForm equalities = EqualityForm::quasi_definite;

@@ -45,6 +45,7 @@ void AugmentedLagrangianOptions::validate() const {
   require(inner_tolerance_factor > 0 && inner_tolerance_factor < 1,
           "inner_tolerance_factor must be between 0 and 1 (1 and above cycles)");
   require(max_outer >= 1 && max_newton >= 1, "max_outer and max_newton must be at least 1");
+  require(screening >= 0, "screening must not be negative");
   require(threads >= 1, "threads must be at least 1");
 }
 
@@ -100,6 +101,7 @@ struct AugmentedLagrangian::Run {
   std::vector<double> start_penalty;
   std::vector<double> last_violation;
   Vector scratch;
+  Index left_out = 0;  // slacks
 
   Run(const AugmentedLagrangianOptions& o, const Problem& p, const Budget& b,
       const std::function<void(const Iterate&)>& f, Workspace& w)
@@ -110,7 +112,11 @@ struct AugmentedLagrangian::Run {
         work(w),
         newton(w.assembly, *w.system, w.equalities, p.fixed_variables, p.node_size, o.newton) {}
 
+  void solve(const WarmStart& warm);
   void start(const WarmStart& warm);
+  void leave_out(const WarmStart& warm);
+  bool left_out_violated() const;
+  bool constrained() const { return left_out < static_cast<Index>(work.slacks.size()); }
   double automatic_penalty(const Constraint& constraint) const;
   void show(const Vector& x, const Vector& equal) const;
   Status inner(NewtonState& state);
@@ -165,6 +171,7 @@ void AugmentedLagrangian::Run::start(const WarmStart& warm) {
   }
   for (std::size_t k = 0; k < work.slacks.size(); ++k) {
     EliminatedSlack& slack = work.slacks[k];
+    slack.set_left_out(false);
     const Index rows = slack.multipliers().size();
     slack.set_multipliers(options.warm_multipliers && k < warm.multipliers.size() ? warm.multipliers[k]
                                                                                   : Vector(Vector::Zero(rows)));
@@ -187,6 +194,47 @@ void AugmentedLagrangian::Run::start(const WarmStart& warm) {
   } else {
     judged = residuals(problem, result);
   }
+}
+
+/// Leaves out the constraints that were inactive, where no element of the initial guess is nearer to its boundary than
+/// `screening` times the largest change of any element in the last solve. That is a guess, not a bound: solve() looks.
+void AugmentedLagrangian::Run::leave_out(const WarmStart& warm) {
+  if (options.screening == 0 || warm.changes.size() != work.slacks.size()) return;
+  for (std::size_t k = 0; k < work.slacks.size(); ++k) {
+    EliminatedSlack& slack = work.slacks[k];
+    if (!slack.multipliers().isZero(0) || !slack.is_far_inside(result.x, options.screening * warm.changes[k])) continue;
+    slack.set_left_out(true);
+    ++left_out;
+  }
+}
+
+/// True where `judged` has found a constraint violated that was left out, by however little.
+bool AugmentedLagrangian::Run::left_out_violated() const {
+  for (std::size_t k = 0; left_out > 0 && k < work.slacks.size(); ++k) {
+    if (work.slacks[k].left_out() && !(judged.violations[k].max <= 0)) return true;
+  }
+  return false;
+}
+
+void AugmentedLagrangian::Run::solve(const WarmStart& warm) {
+  start(warm);
+  const Vector guess = result.x;
+  leave_out(warm);
+  result.counts.screened = left_out;
+  loop();
+  const bool cut_off = result.status == Status::interrupted || result.status == Status::time_limit;
+  if (left_out > 0 && !cut_off && (result.status != Status::solved || left_out_violated())) {
+    // The point with its constraints back is what a solve without screening would start from.
+    left_out = 0;
+    result.multipliers.clear();
+    result.penalties.clear();
+    start_penalty.clear();
+    start(warm);
+    ++result.counts.screening_failures;
+    result.counts.screened = 0;
+    loop();
+  }
+  for (const EliminatedSlack& slack : work.slacks) result.changes.push_back(slack.largest_change(guess, result.x));
 }
 
 /// True where x is so far away that the subproblem has no minimum to be found.
@@ -217,7 +265,7 @@ Status AugmentedLagrangian::Run::inner(NewtonState& state) {
         if (observer) show(now.x, now.multipliers);
         // Without constraints nothing else looks at the forces again, which may be much larger than at the start: thin
         // shells would be asked for a balance below their round-off.
-        if (work.slacks.empty() && ++seen % 8 == 0) {
+        if (!constrained() && ++seen % 8 == 0) {
           result.x = now.x;
           work.equalities.put(now.multipliers, 0, result.multipliers);
           judged = residuals(problem, result);
@@ -332,7 +380,7 @@ bool AugmentedLagrangian::Run::closest_compromise(NewtonState& state) {
 /// Tries the central path from the warm start; on success `result` and `judged` hold the solution, else the warm start
 /// is restored.
 bool AugmentedLagrangian::Run::central_path() {
-  if (!options.central_path.enabled || options.null_space || work.slacks.empty()) return false;
+  if (!options.central_path.enabled || options.null_space || !constrained()) return false;
   const Result start = result;
   const Residuals start_judged = judged;
   for (EliminatedSlack& slack : work.slacks) slack.set_penalty(options.central_path.penalty_fraction * slack.penalty());
@@ -414,6 +462,7 @@ void AugmentedLagrangian::Run::loop() {
       return finish(Status::stalled, "the iterates leave every bound without meeting the constraints");
     }
     update(state);
+    if (left_out_violated()) return finish(Status::stalled, "a constraint that was left out is violated");
     if (merit(judged) < merit(best_judged)) {
       best.x = result.x;
       best.multipliers = result.multipliers;
@@ -488,8 +537,7 @@ Result AugmentedLagrangian::solve(const Problem& problem, const WarmStart& warm,
     }
     const Index pivoted = workspace_->system->pivoted();
     Run run(options_, problem, budget, observer, *workspace_);
-    run.start(warm);
-    run.loop();
+    run.solve(warm);
     result = std::move(run.result);
     if (analysed) ++result.counts.symbolic_analyses;
     result.counts.pivoted_factorizations = workspace_->system->pivoted() - pivoted;

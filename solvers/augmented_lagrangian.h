@@ -26,8 +26,11 @@ struct AugmentedLagrangianOptions {
   /// equations (null_space_system.h), without the central path, as a check of the former.
   bool null_space = false;
   bool conjugate_gradients = false;  ///< in the null space: without a matrix of its own, where its factor fills in
-  double fixed_penalty = 0;         ///< positive: every constraint's penalty, which then never grows and is no multiple
-  bool warm_multipliers = true;     ///< start at the multipliers of the step before
+  double fixed_penalty = 0;      ///< positive: every constraint's penalty, which then never grows and is no multiple
+  bool warm_multipliers = true;  ///< start at the multipliers of the step before
+  /// An inactive constraint is left out of a solve where no element is nearer to its boundary than this times the
+  /// largest change of any element in the last; 0: never.
+  double screening = 4;
   CentralPathOptions central_path;  ///< tried first; the loop of multiplier updates takes over where it fails
   NewtonOptions newton;
   void validate() const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "core/parallel.h"
@@ -27,8 +28,46 @@ void EliminatedSlack::set_multipliers(const Vector& multipliers) {
   multipliers_ = multipliers;
 }
 
+bool EliminatedSlack::is_far_inside(const Vector& x, double radius) const {
+  std::array<double, max_stencil_width> local;
+  Rows c;
+  for (Index element = 0; element < stencils().count(); ++element) {
+    stencils().gather(element, x, local.data());
+    constraint_.evaluate(element, local.data(), c.data(), nullptr);
+    if (!constraint_.set().contains_ball(element, c.data(), radius)) return false;
+  }
+  return true;
+}
+
+double EliminatedSlack::largest_change(const Vector& from, const Vector& to) const {
+  std::array<double, max_stencil_width> local;
+  Rows before, after;
+  double largest = 0;
+  for (Index element = 0; element < stencils().count(); ++element) {
+    stencils().gather(element, from, local.data());
+    constraint_.evaluate(element, local.data(), before.data(), nullptr);
+    stencils().gather(element, to, local.data());
+    constraint_.evaluate(element, local.data(), after.data(), nullptr);
+    double square = 0;
+    for (int i = 0; i < constraint_.rows(); ++i) square += (after[i] - before[i]) * (after[i] - before[i]);
+    if (!std::isfinite(square)) return std::numeric_limits<double>::infinity();
+    largest = std::max(largest, square);
+  }
+  return std::sqrt(largest);
+}
+
+void EliminatedSlack::set_left_out(bool left_out) {
+  left_out_ = left_out;
+  if (left_out) multipliers_.setZero();
+}
+
 double EliminatedSlack::evaluate(Index element, const double* x, double* gradient, double* hessian,
                                  Curvature curvature) const {
+  if (left_out_) {
+    if (gradient) std::fill_n(gradient, stencils().width(), 0.0);
+    if (hessian) std::fill_n(hessian, stencils().width() * stencils().width(), 0.0);
+    return 0;
+  }
   if (linearisation_ != Linearisation::augmented_lagrangian)
     return evaluate_path(element, x, gradient, hessian, curvature);
   const int rows = constraint_.rows(), width = stencils().width();
@@ -155,6 +194,7 @@ struct EliminatedSlack::Path {
 };
 
 EliminatedSlack::Mismatch EliminatedSlack::set_point(const Vector& x, double epsilon, int threads) {
+  if (left_out_) return {};
   const int rows = constraint_.rows();
   if (!path_) path_ = std::make_unique<Path>(rows, stencils().width(), stencils().count());
   Path& path = *path_;
@@ -191,6 +231,7 @@ EliminatedSlack::Mismatch EliminatedSlack::set_point(const Vector& x, double eps
 }
 
 void EliminatedSlack::aim(double target_epsilon, int threads, Vector& gradient) {
+  if (left_out_) return;
   Path& path = *path_;
   const double change = penalty_ * (target_epsilon - path.epsilon);
   path.for_ranges(threads, [&](Index first, Index last) {
@@ -228,6 +269,10 @@ double EliminatedSlack::evaluate_path(Index element, const double* x, double* gr
 }
 
 void EliminatedSlack::multiplier_step(const Vector& dx, int threads, Vector& step) const {
+  if (left_out_) {
+    step.setZero(multipliers_.size());
+    return;
+  }
   const Path& path = *path_;
   step.resize(multipliers_.size());
   path.for_ranges(threads, [&](Index first, Index last) {
@@ -245,6 +290,10 @@ EliminatedSlack::~EliminatedSlack() = default;
 
 void EliminatedSlack::updated_multipliers(const Vector& x, double cap, Vector& updated) const {
   const int rows = constraint_.rows();
+  if (left_out_) {
+    updated.setZero(multipliers_.size());
+    return;
+  }
   updated.resize(multipliers_.size());
   std::array<double, max_stencil_width> local;
   Rows c, y, nearest;
@@ -261,6 +310,7 @@ void EliminatedSlack::updated_multipliers(const Vector& x, double cap, Vector& u
 }
 
 void EliminatedSlack::add_update_force(const Vector& x, Vector& force) const {
+  if (left_out_) return;
   const int rows = constraint_.rows(), width = stencils().width();
   std::array<double, max_stencil_width> local;
   Rows c, y, nearest;

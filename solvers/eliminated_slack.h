@@ -29,6 +29,14 @@ class EliminatedSlack final : public Energy {
   /// Adds w J^T (lambda+ - lambda) at x to `force`: how much the forces would change by an update now.
   void add_update_force(const Vector& x, Vector& force) const;
 
+  /// True where no element of c(x) is within `radius` of its set's boundary, or outside.
+  bool is_far_inside(const Vector& x, double radius) const;
+  /// The largest |c(to) - c(from)| of any element; infinite where that is no number.
+  double largest_change(const Vector& from, const Vector& to) const;
+  /// Left out, it adds nothing to any sum, and its multipliers stay zero.
+  void set_left_out(bool left_out);
+  bool left_out() const { return left_out_; }
+
   /// What evaluate() gives: the augmented Lagrangian above; or, on the central path (central_path.h) and at the point
   /// last given to set_point(), the gradient w J^T lambda and the matrix that is left of Newton's system for x and
   /// lambda after lambda is eliminated, with value 0.
@@ -52,7 +60,7 @@ class EliminatedSlack final : public Energy {
   const Stencils& stencils() const override { return constraint_.stencils(); }
   double evaluate(Index element, const double* x, double* gradient, double* hessian,
                   Curvature curvature) const override;
-  bool guards_steps() const override { return constraint_.guards_steps(); }
+  bool guards_steps() const override { return !left_out_ && constraint_.guards_steps(); }
   double largest_step(Index element, const double* x, const double* dx) const override {
     return constraint_.largest_step(element, x, dx);
   }
@@ -65,6 +73,7 @@ class EliminatedSlack final : public Energy {
   const Constraint& constraint_;
   Vector multipliers_;
   double penalty_ = 1;
+  bool left_out_ = false;
   Linearisation linearisation_ = Linearisation::augmented_lagrangian;
   std::unique_ptr<Path> path_;  ///< what set_point() and aim() keep of every element
 };

@@ -17,6 +17,9 @@ class ConvexSet {
   /// column-major.
   virtual void project(Index element, const double* z, double* nearest, double* derivative) const = 0;
 
+  /// True where all points within `radius` of z are in K. A set that cannot tell says no.
+  virtual bool contains_ball(Index /*element*/, const double* /*z*/, double /*radius*/) const { return false; }
+
   /// The point that eliminating a slack with a logarithmic barrier gives: against one bound b it minimises |z - p|^2/2
   /// - epsilon log(b - p), which is p = z - (y + sqrt(y^2 + 4 epsilon))/2 with y = z - b; with two bounds both
   /// corrections are added. It lies inside K for every z and tends to project() as `epsilon` > 0 (the square of the

@@ -33,6 +33,8 @@ struct Counts {
   long symbolic_analyses = 0;       ///< orderings and symbolic factorisations
   long matrix_allocations = 0;      ///< sparse matrices or slot tables allocated
   long function_evaluations = 0;    ///< values of the objective, with or without derivatives
+  long screened = 0;                ///< constraints left out of a solve, as no element could come near its boundary
+  long screening_failures = 0;      ///< solves that began again with them, as one was violated
   double factor_flops = 0;          ///< floating-point operations of the factorisations; 0 where not known
   Counts& operator+=(const Counts& other);
 };
@@ -51,6 +53,8 @@ struct Result {
   std::vector<Vector> multipliers;
   std::vector<double> penalties;  ///< at the start of the solve, one per constraint (a warm start for the next); empty
                                   ///< for solvers that have none
+  std::vector<double> changes;  ///< largest |c(x) - c(initial guess)| of any element, one per constraint (a warm start
+                                ///< for the next); empty for solvers that screen nothing
   double force_scale = 0;  ///< N, Residuals::force_scale where the solver has judged itself (a warm start for the next)
   Counts counts;
   Timings timings;

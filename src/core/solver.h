@@ -16,7 +16,8 @@ namespace taut {
 struct WarmStart {
   std::vector<Vector> multipliers;
   std::vector<double> penalties;
-  double force_scale = 0;  ///< N, Residuals::force_scale at its end
+  double force_scale = 0;       ///< N, Residuals::force_scale at its end
+  std::vector<double> changes;  ///< as in Result
 };
 
 /// When to give up early: a point in time, or a flag that a signal handler raises.

@@ -222,6 +222,7 @@ void Stepper::hold(const Result& result) {
   state_.warm.multipliers = result.multipliers;
   state_.warm.penalties = result.penalties;
   state_.warm.force_scale = result.force_scale;
+  state_.warm.changes = result.changes;
 }
 
 void Stepper::accept(const Result& result) {
@@ -245,6 +246,7 @@ void Stepper::accept(const Result& result) {
   next.warm.multipliers = result.multipliers;
   next.warm.penalties = result.penalties;
   next.warm.force_scale = result.force_scale;
+  next.warm.changes = result.changes;
   next.previous_positions = std::move(state_.positions);
   next.previous_velocities = std::move(state_.velocities);
   state_ = std::move(next);

@@ -36,6 +36,8 @@ Json counts_json(const Counts& counts) {
           {"linear_solves", counts.linear_solves},
           {"factorizations", counts.factorizations},
           {"pivoted_factorizations", counts.pivoted_factorizations},
+          {"screened", counts.screened},
+          {"screening_failures", counts.screening_failures},
           {"symbolic_analyses", counts.symbolic_analyses},
           {"matrix_allocations", counts.matrix_allocations},
           {"function_evaluations", counts.function_evaluations},

@@ -18,6 +18,8 @@ Json counts_json(const Counts& counts) {
           {"linear_solves", counts.linear_solves},
           {"factorizations", counts.factorizations},
           {"pivoted_factorizations", counts.pivoted_factorizations},
+          {"screened", counts.screened},
+          {"screening_failures", counts.screening_failures},
           {"function_evaluations", counts.function_evaluations},
           {"factor_flops", counts.factor_flops}};
 }
@@ -195,6 +197,8 @@ StepRecord step_of(const Json& json) {
   record.counts.linear_solves = counts.at("linear_solves");
   record.counts.factorizations = counts.at("factorizations");
   record.counts.pivoted_factorizations = counts.value("pivoted_factorizations", 0L);
+  record.counts.screened = counts.value("screened", 0L);
+  record.counts.screening_failures = counts.value("screening_failures", 0L);
   record.counts.function_evaluations = counts.at("function_evaluations");
   record.counts.factor_flops = counts.value("factor_flops", 0.0);
   record.seconds = {number(seconds.at("total")), number(seconds.at("assembly")), number(seconds.at("analysis")),

@@ -39,6 +39,8 @@ Counts read_counts(const Json& json) {
           json.at("symbolic_analyses"),
           json.at("matrix_allocations"),
           json.at("function_evaluations"),
+          json.value("screened", 0L),
+          json.value("screening_failures", 0L),
           json.value("factor_flops", 0.0)};
 }
 

@@ -24,7 +24,8 @@ NamedArrays state_arrays(const State& state) {
                      {"previous_velocities", array(previous_velocities)},
                      {"auxiliary_accelerations", array(auxiliary_accelerations)},
                      {"penalties", warm.penalties},
-                     {"force_scale", {warm.force_scale}}};
+                     {"force_scale", {warm.force_scale}},
+                     {"changes", warm.changes}};
   put_multipliers(warm.multipliers, arrays);
   return arrays;
 }
@@ -37,7 +38,7 @@ State state_from(int step, const NamedArrays& arrays) {
               vector_of(arrays, "previous_positions"),
               vector_of(arrays, "previous_velocities"),
               vector_of(arrays, "auxiliary_accelerations"),
-              {{}, arrays.at("penalties"), arrays.at("force_scale").at(0)}};
+              {{}, arrays.at("penalties"), arrays.at("force_scale").at(0), arrays.at("changes")}};
   for (std::size_t k = 0;; ++k) {
     const std::string name = "multipliers " + std::to_string(k);
     if (!arrays.contains(name)) return state;

@@ -54,7 +54,7 @@ std::string StepTrials::choose_warm_start(const Problem& problem, WarmStart& war
     return given.multipliers.empty() ? "none" : "state";
   }
   if (!latest_solved_ || !fits(latest_.multipliers, problem)) return "none";
-  warm = {latest_.multipliers, latest_.penalties, latest_.force_scale};
+  warm = {latest_.multipliers, latest_.penalties, latest_.force_scale, latest_.changes};
   return "own";
 }
 

@@ -51,6 +51,24 @@ class EverySet : public testing::TestWithParam<Case> {
   Vector any() { return random_.vector(set_->dimension()); }
 };
 
+TEST_P(EverySet, ContainsABallWhereItContainsEveryPointOfIt) {
+  int contained = 0, almost = 0;
+  for (int sample = 0; sample < 300; ++sample) {
+    const Vector z = 0.2 * any();
+    const double radius = 0.05;
+    if (!set_->contains_ball(0, z.data(), radius)) continue;
+    ++contained;
+    for (int other = 0; other < 10; ++other) {
+      const Vector point = z + radius * any().normalized();
+      EXPECT_EQ(project(point), point);
+    }
+    almost += !set_->contains_ball(0, z.data(), 20 * radius);
+  }
+  const bool thin = GetParam().name.ends_with("point");
+  EXPECT_EQ(contained > 0, !thin);
+  EXPECT_EQ(almost > 0, !thin && contained > 0);
+}
+
 TEST_P(EverySet, ProjectsToTheNearestOfItsPoints) {
   for (int sample = 0; sample < 300; ++sample) {
     const Vector z = any(), nearest = project(z);

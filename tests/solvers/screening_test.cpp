@@ -1,0 +1,92 @@
+// Constraints that are left out of a solve because nothing seemed able to reach them.
+#include <gtest/gtest.h>
+
+#include "constraints/convex_sets.h"
+#include "solvers/augmented_lagrangian.h"
+#include "support/problems.h"
+
+namespace taut {
+namespace {
+
+/// (x - target)^2/2.
+class Pull final : public Energy {
+ public:
+  explicit Pull(double target) : target_(target) { stencils_.add(std::array{0}); }
+  std::string name() const override { return "pull"; }
+  const Stencils& stencils() const override { return stencils_; }
+  double evaluate(Index, const double* x, double* gradient, double* hessian, Curvature) const override {
+    if (gradient) *gradient = *x - target_;
+    if (hessian) *hessian = 1;
+    return 0.5 * (*x - target_) * (*x - target_);
+  }
+
+ private:
+  double target_;
+  Stencils stencils_{1};
+};
+
+/// x <= 1.
+class Wall final : public Constraint {
+ public:
+  Wall() { stencils_.add(std::array{0}); }
+  std::string name() const override { return "wall"; }
+  const Stencils& stencils() const override { return stencils_; }
+  int rows() const override { return 1; }
+  const ConvexSet& set() const override { return set_; }
+  void evaluate(Index, const double* x, double* c, double* jacobian) const override {
+    *c = *x;
+    if (jacobian) *jacobian = 1;
+  }
+  void hessian(Index, const double*, const double*, Curvature, double* hessian) const override { *hessian = 0; }
+  double violation(Index, const double* x) const override { return std::max(*x - 1, 0.0); }
+  std::string element_name(Index) const override { return "x"; }
+
+ private:
+  Stencils stencils_{1};
+  Box set_{1, -std::numeric_limits<double>::infinity(), 1};
+};
+
+/// Pulls x from 0 to the target, with what a step before knows about the wall.
+Result pulled(double target, double last_change, double last_multiplier = 0, double screening = 4) {
+  OwnedProblem owned;
+  owned.problem.initial_guess = Vector::Zero(1);
+  owned.problem.node_size = 1;
+  owned.add(std::make_shared<Pull>(target));
+  owned.add(std::make_shared<Wall>());
+  AugmentedLagrangianOptions options;
+  options.screening = screening;
+  WarmStart warm;
+  warm.multipliers = {Vector::Constant(1, last_multiplier)};
+  warm.changes = {last_change};
+  return AugmentedLagrangian(options).solve(owned.problem, warm, {});
+}
+
+TEST(Screening, LeavesOutWhatIsFartherThanFourChanges) {
+  const Result result = pulled(0.5, 0.2);
+  EXPECT_EQ(result.status, Status::solved);
+  EXPECT_EQ(result.counts.screened, 1);
+  EXPECT_EQ(result.counts.screening_failures, 0);
+  EXPECT_EQ(result.counts.linear_solves, 1) << "a quadratic without constraints";
+  EXPECT_DOUBLE_EQ(result.x[0], 0.5);
+  EXPECT_DOUBLE_EQ(result.changes.at(0), 0.5);
+}
+
+TEST(Screening, KeepsWhatIsNearerOrActiveAndEverythingWhereItIsOff) {
+  EXPECT_EQ(pulled(0.5, 0.3).counts.screened, 0);
+  EXPECT_EQ(pulled(0.5, 0.2, 0.1).counts.screened, 0);
+  EXPECT_EQ(pulled(0.5, 0.2, 0, 0).counts.screened, 0);
+}
+
+TEST(Screening, ThatFailsIsSeenAndSolvedAgain) {
+  for (const double target : {1 + 1e-7, 3.0}) {  // within the tolerance of feasibility, and far beyond
+    const Result result = pulled(target, 0.2), never = pulled(target, 0.2, 0, 0);
+    EXPECT_EQ(result.status, Status::solved);
+    EXPECT_EQ(result.counts.screened, 0);
+    EXPECT_EQ(result.counts.screening_failures, 1);
+    EXPECT_EQ(result.x, never.x);
+    EXPECT_EQ(result.multipliers, never.multipliers);
+  }
+}
+
+}  // namespace
+}  // namespace taut
