@@ -42,6 +42,7 @@ std::optional<State> before(const Checkpoint& checkpoint) {
   arrays["velocities"] = checkpoint.arrays.at("previous_velocities");
   arrays["penalties"] = {};
   arrays["force_scale"] = {0.0};
+  arrays["changes"] = {};
   return state_from(static_cast<int>(checkpoint.step) - 1, arrays);
 }
 
