@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <iostream>
+
 #include "tests/study/cross_check.h"
 
 namespace taut {
@@ -20,6 +22,9 @@ TEST_P(EveryStep, HasOneSolutionForThreeMethods) {
   for (const EntryRun& run : check.runs()) {
     // All are asked for 1e-9; with tight limits some end a little above, which the distances do not show.
     const EntrySummary summary = summarize(run);
+    std::cout << GetParam().name << ", " << run.label << ": apart by " << summary.objective_distance
+              << " in objective, " << summary.position_distance << " in positions; residual " << summary.residual
+              << std::endl;
     EXPECT_EQ(summary.false_successes, 0) << run.label;
     EXPECT_LE(summary.residual, 1e-6) << run.label;
     int apart = 0;
