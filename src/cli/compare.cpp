@@ -80,6 +80,10 @@ void check_suite(const CompareArguments& arguments) {
   if (!arguments.problems.empty() || !arguments.reference.empty() || arguments.steps > 0 || arguments.free ||
       arguments.cold || arguments.resume || arguments.threads != 1)
     throw UsageError("--suite takes no PROBLEM, --reference, --steps, --free, --cold, --resume and --threads");
+  const fs::path out = arguments.out;
+  std::error_code error;
+  if (fs::exists(out, error) && !fs::is_empty(out, error) && !fs::exists(out / "compare.json", error))
+    throw UsageError(arguments.out + ": is not empty and holds no comparison of taut; choose another directory");
 }
 
 int compare_on_suite(const CompareArguments& arguments) {
