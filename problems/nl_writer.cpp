@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <iterator>
+#include <numeric>
 #include <set>
 
 #include "files/atomic_file.h"
@@ -65,6 +65,72 @@ std::string lines(const std::vector<std::string>& names) {
   return text;
 }
 
+std::size_t longest(const std::vector<std::string>& names) {
+  std::size_t length = 0;
+  for (const std::string& name : names) length = std::max(length, name.size());
+  return length;
+}
+
+using Rows = std::vector<const NlFile::Row*>;
+
+/// For each variable, how many rows have it.
+std::vector<int> column_counts(const Rows& rows, Index variables) {
+  std::vector<int> counts(static_cast<std::size_t>(variables), 0);
+  for (const NlFile::Row* row : rows) {
+    for (const int variable : variables_of(row->function)) ++counts[static_cast<std::size_t>(variable)];
+  }
+  return counts;
+}
+
+/// The ten lines at the beginning. Every variable counts as nonlinear, which lets them keep their order.
+std::string header(const std::string& name, const NlFile& file, const Rows& rows, const std::vector<int>& columns,
+                   const std::vector<std::string>& row_names) {
+  const auto count = [&](auto condition) { return std::count_if(rows.begin(), rows.end(), condition); };
+  const auto ranges = count([](const NlFile::Row* row) {
+    return std::isfinite(row->lower) && std::isfinite(row->upper) && row->lower < row->upper;
+  });
+  const auto equations = count([](const NlFile::Row* row) { return row->lower == row->upper; });
+  const auto nonlinear = count([](const NlFile::Row* row) { return !row->function.nonlinear.is_zero(); });
+  const Index n = file.start.size(), in_rows = nonlinear > 0 ? n : 0;
+  std::string text = fmt::format("g3 1 1 0\t# problem {}\n", name);
+  text += fmt::format(" {} {} 1 {} {} 0\n {} 1\n 0 0\n", n, rows.size(), ranges, equations, nonlinear);
+  text += fmt::format(" {} {} {}\n 0 0 0 1\n 0 0 0 0 0\n", in_rows, n, in_rows);
+  text += fmt::format(" {} {}\n {} {}\n 0 0 0 0 0\n", std::accumulate(columns.begin(), columns.end(), 0),
+                      variables_of(file.objective).size(), longest(row_names), longest(file.variable_names));
+  return text;
+}
+
+/// Expressions, first guesses of multipliers, start.
+std::string functions_and_start(const NlFile& file, const Rows& rows) {
+  std::string text;
+  for (std::size_t i = 0; i < rows.size(); ++i) text += fmt::format("C{}\n", i) + rows[i]->function.nonlinear.text();
+  text += "O0 0\n" + file.objective.nonlinear.text();
+  std::string duals;
+  int count = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i]->dual == 0) continue;
+    duals += fmt::format("{} {}\n", i, rows[i]->dual);
+    ++count;
+  }
+  if (count > 0) text += fmt::format("d{}\n", count) + duals;
+  text += fmt::format("x{}\n", file.start.size());
+  for (Index i = 0; i < file.start.size(); ++i) text += fmt::format("{} {}\n", i, file.start[i]);
+  return text;
+}
+
+/// Bounds, and the sparsity of the Jacobian with the linear coefficients.
+std::string bounds_and_gradients(const NlFile& file, const Rows& rows, const std::vector<int>& columns) {
+  std::string text = rows.empty() ? "" : "r\n";
+  for (const NlFile::Row* row : rows) text += bound(row->lower, row->upper);
+  text += "b\n";
+  for (Index i = 0; i < file.start.size(); ++i) text += bound(file.lower[i], file.upper[i]);
+  text += fmt::format("k{}\n", columns.size() - 1);
+  int total = 0;
+  for (std::size_t i = 0; i + 1 < columns.size(); ++i) text += fmt::format("{}\n", total += columns[i]);
+  for (std::size_t i = 0; i < rows.size(); ++i) text += gradient(fmt::format("J{}", i), rows[i]->function);
+  return text + gradient("G0", file.objective);
+}
+
 }  // namespace
 
 NlExpression::NlExpression(double constant) : text_(fmt::format("n{}\n", constant)) {}
@@ -103,56 +169,18 @@ NlExpression sum(const std::vector<NlExpression>& terms) {
 }
 
 void NlFile::write(const std::filesystem::path& path) const {
-  std::vector<const Row*> sorted;
+  Rows sorted;
   for (const Row& row : rows) sorted.push_back(&row);
-  const auto nonlinear_end = std::stable_partition(sorted.begin(), sorted.end(),
-                                                   [](const Row* row) { return !row->function.nonlinear.is_zero(); });
-  const auto nonlinear = nonlinear_end - sorted.begin();
-  const auto count = [&](auto condition) { return std::count_if(rows.begin(), rows.end(), condition); };
-  const auto ranges = count(
-      [](const Row& row) { return std::isfinite(row.lower) && std::isfinite(row.upper) && row.lower < row.upper; });
-  const auto equations = count([](const Row& row) { return row.lower == row.upper; });
-  const auto duals = count([](const Row& row) { return row.dual != 0; });
-  std::vector<int> in_column(static_cast<std::size_t>(start.size()), 0);
-  std::size_t entries = 0, longest_row = 0, longest_variable = 0;
+  std::stable_partition(sorted.begin(), sorted.end(),
+                        [](const Row* row) { return !row->function.nonlinear.is_zero(); });
   std::vector<std::string> row_names;
-  for (const Row* row : sorted) {
-    for (const int variable : variables_of(row->function)) ++in_column[static_cast<std::size_t>(variable)], ++entries;
-    row_names.push_back(row->name);
-    longest_row = std::max(longest_row, row->name.size());
-  }
-  for (const std::string& name : variable_names) longest_variable = std::max(longest_variable, name.size());
-
-  const Index n = start.size();
-  std::string text = fmt::format("g3 1 1 0\t# problem {}\n", path.stem().string());
-  text += fmt::format(" {} {} 1 {} {} 0\n {} 1\n 0 0\n", n, rows.size(), ranges, equations, nonlinear);
-  // Every variable counts as nonlinear, which puts them in no other order than the scene's.
-  text += fmt::format(" {} {} {}\n 0 0 0 1\n 0 0 0 0 0\n", nonlinear > 0 ? n : 0, n, nonlinear > 0 ? n : 0);
-  text += fmt::format(" {} {}\n {} {}\n 0 0 0 0 0\n", entries, variables_of(objective).size(), longest_row,
-                      longest_variable);
-  for (std::size_t i = 0; i < sorted.size(); ++i)
-    text += fmt::format("C{}\n", i) + sorted[i]->function.nonlinear.text();
-  text += "O0 0\n" + objective.nonlinear.text();
-  if (duals > 0) text += fmt::format("d{}\n", duals);
-  for (std::size_t i = 0; i < sorted.size(); ++i) {
-    if (sorted[i]->dual != 0) text += fmt::format("{} {}\n", i, sorted[i]->dual);
-  }
-  text += fmt::format("x{}\n", n);
-  for (Index i = 0; i < n; ++i) text += fmt::format("{} {}\n", i, start[i]);
-  if (!sorted.empty()) text += "r\n";
-  for (const Row* row : sorted) text += bound(row->lower, row->upper);
-  text += "b\n";
-  for (Index i = 0; i < n; ++i) text += bound(lower[i], upper[i]);
-  text += fmt::format("k{}\n", n - 1);
-  int total = 0;
-  for (Index i = 0; i + 1 < n; ++i) text += fmt::format("{}\n", total += in_column[static_cast<std::size_t>(i)]);
-  for (std::size_t i = 0; i < sorted.size(); ++i) text += gradient(fmt::format("J{}", i), sorted[i]->function);
-  text += gradient("G0", objective);
-
+  for (const Row* row : sorted) row_names.push_back(row->name);
+  const std::vector<int> columns = column_counts(sorted, start.size());
   const auto beside = [&](const char* extension) { return std::filesystem::path(path).replace_extension(extension); };
   write_atomically(beside(".col"), lines(variable_names));
   write_atomically(beside(".row"), lines(row_names));
-  write_atomically(path, text);
+  write_atomically(path, header(path.stem().string(), *this, sorted, columns, row_names) +
+                             functions_and_start(*this, sorted) + bounds_and_gradients(*this, sorted, columns));
 }
 
 }  // namespace taut

@@ -32,6 +32,7 @@ class NlExpression {
   explicit NlExpression(std::string text) : text_(std::move(text)) {}
   std::string text_;
 };
+NlExpression sum(const std::vector<NlExpression>& terms);
 
 /// A nonlinear expression plus coefficients of variables.
 struct NlFunction {
