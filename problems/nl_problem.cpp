@@ -182,6 +182,14 @@ double NlProblem::objective(const Vector& x) const {
   return model_.has_objective() ? model_.value_at(NlModel::objective, x) : 0.0;
 }
 
+double NlProblem::objective_force(const Vector& x) const {
+  if (energies_.empty()) return 1;
+  const std::vector<int>& own = model_.variables_of(NlModel::objective);
+  Vector gradient(static_cast<Index>(own.size()));
+  model_.evaluate(NlModel::objective, Vector(x(own)).data(), gradient.data(), nullptr);
+  return std::max(gradient.lpNorm<Eigen::Infinity>(), problem_.least_force_scale);
+}
+
 std::string NlProblem::name_of(const std::string& node) const {
   const std::string prefix = "vertex ";
   return node.starts_with(prefix) ? "variable " + model_.variable_name(std::stoi(node.substr(prefix.size()))) : node;

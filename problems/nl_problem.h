@@ -22,6 +22,8 @@ class NlProblem {
   const Problem& problem() const { return problem_; }
   /// The model's objective, sign and constant included.
   double objective(const Vector& x) const;
+  /// The largest entry of the objective's gradient, but at least Problem::least_force_scale; 1 where there is none.
+  double objective_force(const Vector& x) const;
   /// The variable that residuals call "vertex i".
   std::string name_of(const std::string& node) const;
   /// The rate of the objective in each row's bound, as AMPL reports it.

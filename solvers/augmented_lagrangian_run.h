@@ -48,7 +48,6 @@ struct AugmentedLagrangian::Run {
         newton(w.assembly, *w.system, w.equalities, p.fixed_variables, p.node_size, o.newton) {}
 
   void start(const WarmStart& warm);
-  double automatic_penalty(const Constraint& constraint) const;
   void show(const Vector& x, const Vector& equal) const;
   Status inner(NewtonState& state);
   bool diverges(const Vector& x) const;

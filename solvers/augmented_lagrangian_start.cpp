@@ -2,6 +2,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <vector>
 
 #include "solvers/augmented_lagrangian_run.h"
 
@@ -22,17 +24,38 @@ void keep_significant(const EliminatedSlack& slack, Vector& projected) {
   }
 }
 
-}  // namespace
+/// One entry on the diagonal of an element's Hessian.
+struct Stiffness {
+  int variable;
+  double value;
+};
+
+std::vector<Stiffness> diagonals_of_energies(const Problem& problem, const Vector& x) {
+  std::vector<Stiffness> diagonals;
+  for (const Energy* energy : problem.energies) {
+    if (!energy->has_curvature()) continue;
+    const Stencils& stencils = energy->stencils();
+    const int width = stencils.width();
+    Vector local(width), gradient(width), hessian(width * width);
+    for (Index element = 0; element < stencils.count(); ++element) {
+      stencils.gather(element, x, local.data());
+      energy->evaluate(element, local.data(), gradient.data(), hessian.data(), Curvature::positive_semidefinite);
+      for (int k = 0; k < width; ++k) diagonals.push_back({stencils[element][k], hessian[k * width + k]});
+    }
+  }
+  return diagonals;
+}
 
 /// The ratio of the diagonals that energies and this constraint's J^T w J put on the variables it touches: the penalty
 /// at which both are equally stiff.
-double AugmentedLagrangian::Run::automatic_penalty(const Constraint& constraint) const {
+double automatic_penalty(const Constraint& constraint, const Problem& problem, const Vector& x,
+                         const std::vector<Stiffness>& diagonals) {
   Vector touched = Vector::Zero(problem.size());
   const Stencils& stencils = constraint.stencils();
   Vector local(stencils.width()), jacobian(constraint.rows() * stencils.width());
   std::array<double, max_rows> c;
   for (Index element = 0; element < stencils.count(); ++element) {
-    stencils.gather(element, result.x, local.data());
+    stencils.gather(element, x, local.data());
     constraint.evaluate(element, local.data(), c.data(), jacobian.data());
     for (int k = 0; k < stencils.width(); ++k) {
       const double square =
@@ -42,41 +65,36 @@ double AugmentedLagrangian::Run::automatic_penalty(const Constraint& constraint)
   }
   for (int variable : problem.fixed_variables) touched[variable] = 0;
   double stiffness = 0;
-  for (const Energy* energy : problem.energies) {
-    if (!energy->has_curvature()) continue;
-    const int width = energy->stencils().width();
-    Vector gradient(width), hessian(width * width);
-    local.resize(width);
-    for (Index element = 0; element < energy->stencils().count(); ++element) {
-      energy->stencils().gather(element, result.x, local.data());
-      energy->evaluate(element, local.data(), gradient.data(), hessian.data(), Curvature::positive_semidefinite);
-      for (int k = 0; k < width; ++k) {
-        if (touched[energy->stencils()[element][k]] > 0) stiffness += hessian[k * width + k];
-      }
-    }
+  for (const Stiffness& diagonal : diagonals) {
+    if (touched[diagonal.variable] > 0) stiffness += diagonal.value;
   }
   const double rows = touched.sum();
   return rows > 0 && stiffness > 0 && std::isfinite(stiffness / rows) ? stiffness / rows : 1.0;
 }
+
+}  // namespace
 
 void AugmentedLagrangian::Run::start(const WarmStart& warm) {
   result.x = problem.initial_guess;
   for (std::size_t i = 0; i < problem.fixed_variables.size(); ++i) {
     result.x[problem.fixed_variables[i]] = problem.fixed_values[static_cast<Index>(i)];
   }
+  std::optional<std::vector<Stiffness>> diagonals;
   for (std::size_t k = 0; k < work.slacks.size(); ++k) {
     EliminatedSlack& slack = work.slacks[k];
     const Index rows = slack.multipliers().size();
     slack.set_multipliers(options.warm_multipliers && k < warm.multipliers.size() ? warm.multipliers[k]
                                                                                   : Vector(Vector::Zero(rows)));
-    const double automatic = options.fixed_penalty > 0 ? options.fixed_penalty
-                             : k < warm.penalties.size() && warm.penalties[k] > 0
-                                 ? warm.penalties[k]
-                                 : options.penalty * automatic_penalty(slack.constraint());
-    slack.set_penalty(automatic);
-    start_penalty.push_back(automatic);
+    double penalty = options.fixed_penalty;
+    if (penalty == 0 && k < warm.penalties.size()) penalty = warm.penalties[k];
+    if (!(penalty > 0)) {
+      if (!diagonals) diagonals = diagonals_of_energies(problem, result.x);
+      penalty = options.penalty * automatic_penalty(slack.constraint(), problem, result.x, *diagonals);
+    }
+    slack.set_penalty(penalty);
+    start_penalty.push_back(penalty);
     result.multipliers.push_back(slack.multipliers());
-    result.penalties.push_back(automatic);
+    result.penalties.push_back(penalty);
   }
   work.equalities.update(problem);
   const Vector equal = work.equalities.stacked(warm.multipliers, work.slacks.size());

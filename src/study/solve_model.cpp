@@ -1,5 +1,7 @@
 #include "study/solve_model.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -97,6 +99,12 @@ ModelSolution solve_model(const NlModel& model, const Scene& settings, const Bud
       record.status = record.residuals.finite ? Status::stalled : Status::not_finite;
       record.message = summary.solver + " says solved, but the residuals are not within tolerance";
     }
+    // Rows that push against each other make a scale on which little is left to see.
+    const double off = record.residuals.stationarity_unscaled / posed.objective_force(result.x);
+    if (record.status == Status::solved && off > settings.solver.tolerance.stationarity)
+      summary.notes.push_back(
+          fmt::format("stationarity is {:.1e} of the largest force, that of a row, but {:.1e} of the objective's",
+                      record.residuals.stationarity, off));
     solution.false_success = record.status != Status::solved && (result.status == Status::solved || result.overruled);
     record.counts = result.counts;
     record.seconds = result.timings;
