@@ -115,6 +115,16 @@ class NlBound final : public Constraint {
   Stencils stencils_{1};
 };
 
+/// Beyond this a dense matrix of second derivatives takes more memory and time than anyone has.
+constexpr std::size_t largest_width = 4000;
+
+void check_width(const NlModel& model, int function, const std::string& what) {
+  const std::size_t width = model.variables_of(function).size();
+  if (width > largest_width && (function != NlModel::objective || !model.linear(function)))
+    throw InputError(model.name() + ".nl: found " + std::to_string(width) + " variables in " + what +
+                     ", allowed: " + std::to_string(largest_width) + ", as second derivatives are dense");
+}
+
 /// Bounds that cross, and rows without variables that do not hold, are no problem that a solver could be given.
 void check_bounds(const NlModel& model) {
   const auto check = [&](const std::string& what, double lower, double upper) {
@@ -155,6 +165,7 @@ NlProblem::NlProblem(const NlModel& model) : model_(model) {
   }
   problem_.fixed_values = Eigen::Map<const Vector>(fixed.data(), static_cast<Index>(fixed.size()));
   for (int row = 0; row < model.rows(); ++row) {
+    check_width(model, row, "row " + model.row_name(row));
     const bool bounded = std::isfinite(model.row_lower()[row]) || std::isfinite(model.row_upper()[row]);
     constraint_of_row_.push_back(bounded && !model.variables_of(row).empty() ? static_cast<int>(constraints_.size())
                                                                              : -1);
@@ -165,6 +176,7 @@ NlProblem::NlProblem(const NlModel& model) : model_(model) {
     if (constraint_of_row_.back() >= 0) constraints_.push_back(std::make_unique<NlRow>(model, row, row_scale_.back()));
   }
   if (model.has_objective() && !model.variables_of(NlModel::objective).empty()) {
+    check_width(model, NlModel::objective, "the objective");
     energies_.push_back(std::make_unique<NlObjective>(model));
     Vector x = problem_.initial_guess(model.variables_of(NlModel::objective)), gradient(x.size());
     model.evaluate(NlModel::objective, x.data(), gradient.data(), nullptr);

@@ -15,7 +15,8 @@ namespace taut {
 /// the start exceeds 100; violations are those of the model's own rows.
 class NlProblem {
  public:
-  /// Borrows the model. Throws InputError where bounds cross, and where a row without variables does not hold.
+  /// Borrows the model. Throws InputError where a function has more than 4000 variables, where bounds cross, and
+  /// where a row without variables does not hold.
   explicit NlProblem(const NlModel& model);
   ~NlProblem();
 

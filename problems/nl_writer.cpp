@@ -177,10 +177,10 @@ void NlFile::write(const std::filesystem::path& path) const {
   for (const Row* row : sorted) row_names.push_back(row->name);
   const std::vector<int> columns = column_counts(sorted, start.size());
   const auto beside = [&](const char* extension) { return std::filesystem::path(path).replace_extension(extension); };
-  write_atomically(beside(".col"), lines(variable_names));
-  write_atomically(beside(".row"), lines(row_names));
   write_atomically(path, header(path.stem().string(), *this, sorted, columns, row_names) +
                              functions_and_start(*this, sorted) + bounds_and_gradients(*this, sorted, columns));
+  write_atomically(beside(".col"), lines(variable_names));
+  write_atomically(beside(".row"), lines(row_names));
 }
 
 }  // namespace taut
