@@ -1,5 +1,6 @@
 #include "problems/nl_model.h"
 
+#include <algorithm>
 #include <cmath>
 #include <csetjmp>
 #include <cstdio>
@@ -30,9 +31,12 @@ struct NlModel::Data {
   std::vector<std::vector<int>> row_variables;
   std::vector<int> objective_variables;
   bool linear_objective = true;
-  // Work: all variables, of which a function reads its own; a gradient and a Hessian of all of them.
-  Vector x, gradient, weights;
-  Matrix hessian;
+  // Nonzeros of the second derivatives, upper triangle by columns: of the objective, and of all rows together.
+  SputInfo *objective_pattern = nullptr, *row_pattern = nullptr;
+  // Work: all variables, of which a function reads its own; a gradient and second derivatives of all of them; where a
+  // function has each variable.
+  Vector x, gradient, weights, second;
+  std::vector<int> place;
 
   ~Data() {
     if (asl) ASL_free(&asl);
@@ -143,7 +147,11 @@ NlModel::NlModel(const std::filesystem::path& given) : data_(std::make_unique<Da
   d.x = d.start;
   d.gradient.resize(n);
   d.weights = Vector::Zero(m);
-  d.hessian.resize(n, n);
+  d.place.assign(static_cast<std::size_t>(n), -1);
+  fint nonzeros = 0;
+  if (!d.linear_objective) nonzeros = sphes_setup_ASL(asl, &d.objective_pattern, 0, 0, 0, 1);
+  if (nlc > 0) nonzeros = std::max(nonzeros, sphes_setup_ASL(asl, &d.row_pattern, -1, 0, 1, 1));
+  d.second.resize(nonzeros);
 }
 
 NlModel::~NlModel() = default;
@@ -210,18 +218,28 @@ double NlModel::evaluate(int function, const double* x, double* gradient, double
     std::fill(hessian, hessian + own.size() * own.size(), 0.0);
     return value;
   }
-  double one = 1;
+  SputInfo*& pattern = function == objective ? d.objective_pattern : d.row_pattern;
   if (function == objective) {
-    fullhes(d.hessian.data(), static_cast<fint>(d.x.size()), 0, &one, nullptr);
+    sphes_ASL(asl, &pattern, d.second.data(), 0, nullptr, nullptr);
   } else {
     d.weights[function] = 1;
-    fullhes(d.hessian.data(), static_cast<fint>(d.x.size()), -1, nullptr, d.weights.data());
+    sphes_ASL(asl, &pattern, d.second.data(), -1, nullptr, d.weights.data());
     d.weights[function] = 0;
   }
-  for (std::size_t i = 0; i < own.size(); ++i) {
-    for (std::size_t j = 0; j < own.size(); ++j) hessian[i + j * own.size()] = d.hessian(own[i], own[j]);
+  std::fill(hessian, hessian + own.size() * own.size(), 0.0);
+  for (std::size_t k = 0; k < own.size(); ++k) d.place[own[k]] = static_cast<int>(k);
+  for (std::size_t j = 0; j < own.size(); ++j) {
+    for (fint entry = pattern->hcolstarts[own[j]]; entry < pattern->hcolstarts[own[j] + 1]; ++entry) {
+      const int i = d.place[pattern->hrownos[entry]];
+      if (i >= 0) hessian[i + j * own.size()] = hessian[j + i * own.size()] = d.second[entry];
+    }
   }
+  for (const int variable : own) d.place[variable] = -1;
   return value;
+}
+
+double NlModel::value_at(int function, const Vector& x) const {
+  return evaluate(function, Vector(x(variables_of(function))).data(), nullptr, nullptr);
 }
 
 void NlModel::write_solution(const std::string& message, int code, const Vector& x, const Vector& dual) const {

@@ -44,6 +44,9 @@ class NlModel {
   /// (dense, both triangles) are overwritten where they are not null.
   double evaluate(int function, const double* x, double* gradient, double* hessian) const;
 
+  /// Its value where all variables of the model are given.
+  double value_at(int function, const Vector& x) const;
+
   /// Writes the model's .sol file beside it: `dual` has the sign of AMPL, the rate of the objective in the row's bound.
   /// `code` is solve_result_num. Throws FileError.
   void write_solution(const std::string& message, int code, const Vector& x, const Vector& dual) const;

@@ -115,18 +115,14 @@ class NlBound final : public Constraint {
   Stencils stencils_{1};
 };
 
-Vector local(const NlModel& model, int function, const Vector& x) {
-  const std::vector<int>& own = model.variables_of(function);
-  Vector values(static_cast<Index>(own.size()));
-  for (std::size_t k = 0; k < own.size(); ++k) values[static_cast<Index>(k)] = x[own[k]];
-  return values;
-}
+/// Beyond this a dense matrix of second derivatives takes more memory and time than anyone has.
+constexpr std::size_t largest_width = 4000;
 
 void check_width(const NlModel& model, int function, const std::string& what) {
   const std::size_t width = model.variables_of(function).size();
-  if (width > max_stencil_width)
+  if (width > largest_width && (function != NlModel::objective || !model.linear(function)))
     throw InputError(model.name() + ".nl: found " + std::to_string(width) + " variables in " + what +
-                     ", allowed: " + std::to_string(max_stencil_width));
+                     ", allowed: " + std::to_string(largest_width) + ", as second derivatives are dense");
 }
 
 /// Bounds that cross, and rows without variables that do not hold, are no problem that a solver could be given.
@@ -173,7 +169,7 @@ NlProblem::NlProblem(const NlModel& model) : model_(model) {
     const bool bounded = std::isfinite(model.row_lower()[row]) || std::isfinite(model.row_upper()[row]);
     constraint_of_row_.push_back(bounded && !model.variables_of(row).empty() ? static_cast<int>(constraints_.size())
                                                                              : -1);
-    Vector x = local(model, row, problem_.initial_guess), gradient(x.size());
+    Vector x = problem_.initial_guess(model.variables_of(row)), gradient(x.size());
     model.evaluate(row, x.data(), gradient.data(), nullptr);
     const double largest = x.size() > 0 ? gradient.lpNorm<Eigen::Infinity>() : 0.0;
     row_scale_.push_back(largest > largest_derivative && std::isfinite(largest) ? largest_derivative / largest : 1.0);
@@ -182,7 +178,7 @@ NlProblem::NlProblem(const NlModel& model) : model_(model) {
   if (model.has_objective() && !model.variables_of(NlModel::objective).empty()) {
     check_width(model, NlModel::objective, "the objective");
     energies_.push_back(std::make_unique<NlObjective>(model));
-    Vector x = local(model, NlModel::objective, problem_.initial_guess), gradient(x.size());
+    Vector x = problem_.initial_guess(model.variables_of(NlModel::objective)), gradient(x.size());
     model.evaluate(NlModel::objective, x.data(), gradient.data(), nullptr);
     const double largest = gradient.lpNorm<Eigen::Infinity>();
     // Forces may all vanish at the solution of a general problem: their size at the start is the measure then.
@@ -195,9 +191,15 @@ NlProblem::NlProblem(const NlModel& model) : model_(model) {
 NlProblem::~NlProblem() = default;
 
 double NlProblem::objective(const Vector& x) const {
-  return model_.has_objective()
-             ? model_.evaluate(NlModel::objective, local(model_, NlModel::objective, x).data(), nullptr, nullptr)
-             : 0.0;
+  return model_.has_objective() ? model_.value_at(NlModel::objective, x) : 0.0;
+}
+
+double NlProblem::objective_force(const Vector& x) const {
+  if (energies_.empty()) return 1;
+  const std::vector<int>& own = model_.variables_of(NlModel::objective);
+  Vector gradient(static_cast<Index>(own.size()));
+  model_.evaluate(NlModel::objective, Vector(x(own)).data(), gradient.data(), nullptr);
+  return std::max(gradient.lpNorm<Eigen::Infinity>(), problem_.least_force_scale);
 }
 
 std::string NlProblem::name_of(const std::string& node) const {

@@ -15,14 +15,16 @@ namespace taut {
 /// the start exceeds 100; violations are those of the model's own rows.
 class NlProblem {
  public:
-  /// Borrows the model. Throws InputError where a function has more variables than a stencil may, where bounds cross,
-  /// and where a row without variables does not hold.
+  /// Borrows the model. Throws InputError where a function has more than 4000 variables, where bounds cross, and
+  /// where a row without variables does not hold.
   explicit NlProblem(const NlModel& model);
   ~NlProblem();
 
   const Problem& problem() const { return problem_; }
   /// The model's objective, sign and constant included.
   double objective(const Vector& x) const;
+  /// The largest entry of the objective's gradient, but at least Problem::least_force_scale; 1 where there is none.
+  double objective_force(const Vector& x) const;
   /// The variable that residuals call "vertex i".
   std::string name_of(const std::string& node) const;
   /// The rate of the objective in each row's bound, as AMPL reports it.

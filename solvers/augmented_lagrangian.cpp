@@ -1,34 +1,14 @@
 #include "solvers/augmented_lagrangian.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <deque>
+#include <limits>
 #include <stdexcept>
 
 #include "core/stopwatch.h"
-#include "solvers/eliminated_slack.h"
-#include "solvers/equality_system.h"
+#include "solvers/augmented_lagrangian_run.h"
 #include "solvers/null_space_system.h"
 
 namespace taut {
-namespace {
-
-/// Replaces `projected` by the multipliers of `slack`, but zero in elements where `projected` is zero and the norm is
-/// below 1e-6 of the largest.
-void keep_significant(const EliminatedSlack& slack, Vector& projected) {
-  const Vector& own = slack.multipliers();
-  const int rows = slack.constraint().rows();
-  double largest = 0;
-  for (Index first = 0; first < own.size(); first += rows) largest = std::max(largest, own.segment(first, rows).norm());
-  for (Index first = 0; first < own.size(); first += rows) {
-    const bool negligible =
-        projected.segment(first, rows).isZero(0) && own.segment(first, rows).norm() <= 1e-6 * largest;
-    if (!negligible) projected.segment(first, rows) = own.segment(first, rows);
-  }
-}
-
-}  // namespace
 
 void AugmentedLagrangianOptions::validate() const {
   const auto require = [](bool ok, const char* what) {
@@ -49,192 +29,39 @@ void AugmentedLagrangianOptions::validate() const {
   require(threads >= 1, "threads must be at least 1");
 }
 
-/// What is kept from solve to solve of the same topology.
-struct AugmentedLagrangian::Workspace {
-  std::uint64_t topology = 0;
+namespace {
+
+std::deque<EliminatedSlack> make_slacks(const Problem& problem) {
   std::deque<EliminatedSlack> slacks;
-  EqualityRows equalities;
-  Assembly assembly;
-  std::unique_ptr<Cholesky> cholesky;  // null with equalities or the null space
-  std::unique_ptr<NewtonSystem> system;
-
-  Workspace(const Problem& problem, bool null_space, bool conjugate_gradients, EqualityForm form, int threads)
-      : topology(problem.topology),
-        slacks(problem.constraints.size() ? make_slacks(problem) : std::deque<EliminatedSlack>{}),
-        equalities(problem),
-        assembly(problem.size(), terms(problem), null_space ? std::vector<int>{} : problem.fixed_variables, threads) {
-    if (null_space) {
-      system = std::make_unique<NullSpaceSystem>(assembly, equalities, problem, conjugate_gradients);
-    } else if (equalities.count() > 0 && form == EqualityForm::penalised) {
-      system = std::make_unique<PenalisedRowsSystem>(assembly, equalities, problem.fixed_variables, threads);
-    } else if (equalities.count() > 0) {
-      system = std::make_unique<QuasiDefiniteSystem>(assembly, equalities, problem.fixed_variables);
-    } else {
-      assembly.set_order(fill_reducing_order(assembly.graph()));
-      cholesky = std::make_unique<Cholesky>(assembly.matrix(), threads);
-      system = std::make_unique<SubstitutedSystem>(assembly, *cholesky);
-    }
-  }
-
-  static std::deque<EliminatedSlack> make_slacks(const Problem& problem) {
-    std::deque<EliminatedSlack> slacks;
-    for (const Constraint* constraint : problem.constraints) slacks.emplace_back(*constraint);
-    return slacks;
-  }
-  std::vector<const Energy*> terms(const Problem& problem) const {
-    std::vector<const Energy*> all = problem.energies;
-    for (const EliminatedSlack& slack : slacks) all.push_back(&slack);
-    return all;
-  }
-};
-
-/// One call of solve().
-struct AugmentedLagrangian::Run {
-  const AugmentedLagrangianOptions& options;
-  const Problem& problem;
-  const Budget& budget;
-  const std::function<void(const Iterate&)>& observer;
-  Workspace& work;
-  Newton newton;
-  Result result;     // what is being improved
-  Residuals judged;  // of `result`
-  std::vector<double> start_penalty;
-  std::vector<double> last_violation;
-  Vector scratch;
-  Index left_out = 0;  // slacks
-
-  Run(const AugmentedLagrangianOptions& o, const Problem& p, const Budget& b,
-      const std::function<void(const Iterate&)>& f, Workspace& w)
-      : options(o),
-        problem(p),
-        budget(b),
-        observer(f),
-        work(w),
-        newton(w.assembly, *w.system, w.equalities, p.fixed_variables, p.node_size, o.newton) {}
-
-  void solve(const WarmStart& warm);
-  void start(const WarmStart& warm);
-  void leave_out(const WarmStart& warm);
-  bool left_out_violated() const;
-  bool constrained() const { return left_out < static_cast<Index>(work.slacks.size()); }
-  double automatic_penalty(const Constraint& constraint) const;
-  void show(const Vector& x, const Vector& equal) const;
-  Status inner(NewtonState& state);
-  bool diverges(const Vector& x) const;
-  void update(const NewtonState& state);
-  bool update_penalties();
-  bool penalise(double growth, double tolerance, NewtonState& state);
-  bool closest_compromise(NewtonState& state);
-  bool central_path();
-  void loop();
-  double merit(const Residuals& residuals) const;
-};
-
-/// The ratio of the diagonals that energies and this constraint's J^T w J put on the variables it touches: the penalty
-/// at which both are equally stiff.
-double AugmentedLagrangian::Run::automatic_penalty(const Constraint& constraint) const {
-  std::array<double, max_stencil_width> local, gradient;
-  std::array<double, max_rows> c;
-  std::vector<double> jacobian(max_rows * max_stencil_width), hessian(max_stencil_width * max_stencil_width);
-  Vector touched = Vector::Zero(problem.size());
-  const Stencils& stencils = constraint.stencils();
-  for (Index element = 0; element < stencils.count(); ++element) {
-    stencils.gather(element, result.x, local.data());
-    constraint.evaluate(element, local.data(), c.data(), jacobian.data());
-    for (int k = 0; k < stencils.width(); ++k) {
-      const double square =
-          Eigen::Map<const Vector>(jacobian.data() + k * constraint.rows(), constraint.rows()).squaredNorm();
-      touched[stencils[element][k]] += constraint.weight(element) * square;
-    }
-  }
-  for (int variable : problem.fixed_variables) touched[variable] = 0;
-  double stiffness = 0;
-  for (const Energy* energy : problem.energies) {
-    if (!energy->has_curvature()) continue;
-    const int width = energy->stencils().width();
-    for (Index element = 0; element < energy->stencils().count(); ++element) {
-      energy->stencils().gather(element, result.x, local.data());
-      energy->evaluate(element, local.data(), gradient.data(), hessian.data(), Curvature::positive_semidefinite);
-      for (int k = 0; k < width; ++k) {
-        if (touched[energy->stencils()[element][k]] > 0) stiffness += hessian[static_cast<std::size_t>(k * width + k)];
-      }
-    }
-  }
-  const double rows = touched.sum();
-  return rows > 0 && stiffness > 0 && std::isfinite(stiffness / rows) ? stiffness / rows : 1.0;
+  for (const Constraint* constraint : problem.constraints) slacks.emplace_back(*constraint);
+  return slacks;
 }
 
-void AugmentedLagrangian::Run::start(const WarmStart& warm) {
-  result.x = problem.initial_guess;
-  for (std::size_t i = 0; i < problem.fixed_variables.size(); ++i) {
-    result.x[problem.fixed_variables[i]] = problem.fixed_values[static_cast<Index>(i)];
-  }
-  for (std::size_t k = 0; k < work.slacks.size(); ++k) {
-    EliminatedSlack& slack = work.slacks[k];
-    slack.set_left_out(false);
-    const Index rows = slack.multipliers().size();
-    slack.set_multipliers(options.warm_multipliers && k < warm.multipliers.size() ? warm.multipliers[k]
-                                                                                  : Vector(Vector::Zero(rows)));
-    const double automatic = options.fixed_penalty > 0 ? options.fixed_penalty
-                             : k < warm.penalties.size() && warm.penalties[k] > 0
-                                 ? warm.penalties[k]
-                                 : options.penalty * automatic_penalty(slack.constraint());
-    slack.set_penalty(automatic);
-    start_penalty.push_back(automatic);
-    result.multipliers.push_back(slack.multipliers());
-    result.penalties.push_back(automatic);
-  }
-  work.equalities.update(problem);
-  const Vector equal = work.equalities.stacked(warm.multipliers, work.slacks.size());
-  work.equalities.put(options.warm_multipliers ? equal : Vector(Vector::Zero(equal.size())), work.slacks.size(),
-                      result.multipliers);
-  // Of the start only the scale of its forces is wanted, and the last step's is as good.
-  if (warm.force_scale > 0 && std::isfinite(warm.force_scale) && !work.slacks.empty()) {
-    judged.force_scale = warm.force_scale;
+std::vector<const Energy*> terms(const Problem& problem, const std::deque<EliminatedSlack>& slacks) {
+  std::vector<const Energy*> all = problem.energies;
+  for (const EliminatedSlack& slack : slacks) all.push_back(&slack);
+  return all;
+}
+
+}  // namespace
+
+AugmentedLagrangian::Workspace::Workspace(const Problem& problem, const AugmentedLagrangianOptions& options)
+    : topology(problem.topology),
+      slacks(make_slacks(problem)),
+      equalities(problem),
+      assembly(problem.size(), terms(problem, slacks),
+               options.null_space ? std::vector<int>{} : problem.fixed_variables, options.threads) {
+  if (options.null_space) {
+    system = std::make_unique<NullSpaceSystem>(assembly, equalities, problem, options.conjugate_gradients);
+  } else if (equalities.count() > 0 && options.equalities == EqualityForm::penalised) {
+    system = std::make_unique<PenalisedRowsSystem>(assembly, equalities, problem.fixed_variables, options.threads);
+  } else if (equalities.count() > 0) {
+    system = std::make_unique<QuasiDefiniteSystem>(assembly, equalities, problem.fixed_variables);
   } else {
-    judged = residuals(problem, result);
+    assembly.set_order(fill_reducing_order(assembly.graph()));
+    cholesky = std::make_unique<Cholesky>(assembly.matrix(), options.threads);
+    system = std::make_unique<SubstitutedSystem>(assembly, *cholesky);
   }
-}
-
-/// Leaves out the constraints that were inactive, where no element of the initial guess is nearer to its boundary than
-/// `screening` times the largest change of any element in the last solve. That is a guess, not a bound: solve() looks.
-void AugmentedLagrangian::Run::leave_out(const WarmStart& warm) {
-  if (options.screening == 0 || warm.changes.size() != work.slacks.size()) return;
-  for (std::size_t k = 0; k < work.slacks.size(); ++k) {
-    EliminatedSlack& slack = work.slacks[k];
-    if (!slack.multipliers().isZero(0) || !slack.is_far_inside(result.x, options.screening * warm.changes[k])) continue;
-    slack.set_left_out(true);
-    ++left_out;
-  }
-}
-
-/// True where `judged` has found a constraint violated that was left out, by however little.
-bool AugmentedLagrangian::Run::left_out_violated() const {
-  for (std::size_t k = 0; left_out > 0 && k < work.slacks.size(); ++k) {
-    if (work.slacks[k].left_out() && !(judged.violations[k].max <= 0)) return true;
-  }
-  return false;
-}
-
-void AugmentedLagrangian::Run::solve(const WarmStart& warm) {
-  start(warm);
-  const Vector guess = result.x;
-  leave_out(warm);
-  result.counts.screened = left_out;
-  loop();
-  const bool cut_off = result.status == Status::interrupted || result.status == Status::time_limit;
-  if (left_out > 0 && !cut_off && (result.status != Status::solved || left_out_violated())) {
-    // The point with its constraints back is what a solve without screening would start from.
-    left_out = 0;
-    result.multipliers.clear();
-    result.penalties.clear();
-    start_penalty.clear();
-    start(warm);
-    ++result.counts.screening_failures;
-    result.counts.screened = 0;
-    loop();
-  }
-  for (const EliminatedSlack& slack : work.slacks) result.changes.push_back(slack.largest_change(guess, result.x));
 }
 
 /// True where x is so far away that the subproblem has no minimum to be found.
@@ -318,102 +145,6 @@ bool AugmentedLagrangian::Run::update_penalties() {
   return room;
 }
 
-double AugmentedLagrangian::Run::merit(const Residuals& r) const {
-  if (!r.finite) return std::numeric_limits<double>::infinity();
-  const Tolerances& t = options.tolerances;
-  return std::max(
-      {r.stationarity / t.stationarity, r.feasibility / t.feasibility, r.complementarity / t.complementarity});
-}
-
-/// Minimises the energies and a penalty on the violation, `growth` times that of the start, from state.x; until
-/// forces balance to `tolerance`; the slacks get the multipliers that belong to it. False where that fails by far.
-bool AugmentedLagrangian::Run::penalise(double growth, double tolerance, NewtonState& state) {
-  for (std::size_t k = 0; k < work.slacks.size(); ++k) {
-    work.slacks[k].set_multipliers(Vector::Zero(work.slacks[k].multipliers().size()));
-    work.slacks[k].set_penalty(growth * start_penalty[k]);
-  }
-  double scale = 0;
-  newton.minimise(
-      state,
-      [&](const NewtonState& now) {
-        // The forces of the penalised violation, term by term, are the scale on which their sum has to vanish.
-        Result probe;
-        probe.x = now.x;
-        for (const EliminatedSlack& slack : work.slacks) {
-          probe.multipliers.emplace_back();
-          slack.updated_multipliers(now.x, std::numeric_limits<double>::infinity(), probe.multipliers.back());
-        }
-        work.equalities.put(now.multipliers, work.slacks.size(), probe.multipliers);
-        scale = residuals(problem, probe).force_scale;
-        return now.nodal_norm <= tolerance * scale || result.counts.linear_solves >= options.max_newton;
-      },
-      budget, result.counts, result.timings);
-  for (EliminatedSlack& slack : work.slacks) {
-    Vector stiff;
-    slack.updated_multipliers(state.x, std::numeric_limits<double>::infinity(), stiff);
-    slack.set_multipliers(stiff);
-  }
-  return state.nodal_norm <= 10 * tolerance * scale;
-}
-
-/// Minimises the violation from state.x, with the energies as a weak tie-breaker; true where that leaves it violated
-/// and stationary: the residuals are then those of the compromise, in `judged`.
-///
-/// A penalty finite as it is, the energies violate feasible constraints, too, by lambda / mu. So a second one, a
-/// hundred times as large, has to leave the violation c as it is. Forces balance at both, mu J^T c = -grad f, and grad
-/// f is bounded, so that |J^T c| has fallen to a hundredth while |c| has not.
-bool AugmentedLagrangian::Run::closest_compromise(NewtonState& state) {
-  const auto violation = [&] {
-    result.x = state.x;
-    work.equalities.put(state.multipliers, work.slacks.size(), result.multipliers);
-    judged = residuals(problem, result);
-    return judged.feasibility;
-  };
-  if (!penalise(1e3, 1e-4, state)) return false;
-  const double first = violation();
-  if (first <= options.tolerances.feasibility) return false;
-  const bool balanced = penalise(1e5, 1e-6, state);
-  const double second = violation();
-  return balanced && second > 0.5 * first && second > options.tolerances.feasibility;
-}
-
-/// Tries the central path from the warm start; on success `result` and `judged` hold the solution, else the warm start
-/// is restored.
-bool AugmentedLagrangian::Run::central_path() {
-  if (!options.central_path.enabled || options.null_space || !constrained()) return false;
-  const Result start = result;
-  const Residuals start_judged = judged;
-  for (EliminatedSlack& slack : work.slacks) slack.set_penalty(options.central_path.penalty_fraction * slack.penalty());
-  Vector x = result.x, equal = work.equalities.stacked(result.multipliers, work.slacks.size());
-  const bool solved = follow_central_path(
-      work.assembly, *work.system, work.equalities, work.slacks, problem.node_size, judged.force_scale,
-      options.tolerances, options.central_path, options.threads, x, equal,
-      [&](const Vector& candidate) {
-        result.x = candidate;
-        const Judge judge(problem, result.x);
-        // Projected multipliers vanish where a constraint is not active; the path's own are positive everywhere, but
-        // where many are weak their forces balance better, so they come second, without those that are negligible.
-        for (std::size_t k = 0; k < work.slacks.size(); ++k) {
-          work.slacks[k].updated_multipliers(candidate, std::numeric_limits<double>::infinity(), result.multipliers[k]);
-        }
-        work.equalities.put(equal, work.slacks.size(), result.multipliers);
-        judged = judge(result.multipliers);
-        if (judged.within(options.tolerances)) return merit(judged);
-        for (std::size_t k = 0; k < work.slacks.size(); ++k) keep_significant(work.slacks[k], result.multipliers[k]);
-        judged = judge(result.multipliers);
-        return merit(judged);
-      },
-      observer ? [&](const Vector& now) { show(now, equal); } : std::function<void(const Vector&)>(), budget,
-      result.counts, result.timings);
-  for (std::size_t k = 0; k < work.slacks.size(); ++k) work.slacks[k].set_penalty(start_penalty[k]);
-  if (solved) return true;
-  result.x = start.x;
-  result.multipliers = start.multipliers;
-  judged = start_judged;
-  for (std::size_t k = 0; k < work.slacks.size(); ++k) work.slacks[k].set_multipliers(start.multipliers[k]);
-  return false;
-}
-
 void AugmentedLagrangian::Run::loop() {
   if (central_path()) {
     result.status = Status::solved;
@@ -431,7 +162,8 @@ void AugmentedLagrangian::Run::loop() {
   int stalls = 0, without_progress = 0, failures = 0;
 
   const auto finish = [&](Status status, std::string message) {
-    if (status != Status::solved && status != Status::infeasible && merit(best_judged) < merit(judged)) {
+    if (status != Status::solved && status != Status::infeasible &&
+        best_judged.over(options.tolerances) < judged.over(options.tolerances)) {
       result.x = best.x;
       result.multipliers = best.multipliers;
       judged = best_judged;
@@ -463,7 +195,7 @@ void AugmentedLagrangian::Run::loop() {
     }
     update(state);
     if (left_out_violated()) return finish(Status::stalled, "a constraint that was left out is violated");
-    if (merit(judged) < merit(best_judged)) {
+    if (judged.over(options.tolerances) < best_judged.over(options.tolerances)) {
       best.x = result.x;
       best.multipliers = result.multipliers;
       best_judged = judged;
@@ -531,8 +263,7 @@ Result AugmentedLagrangian::solve(const Problem& problem, const WarmStart& warm,
       const Stopwatch analysis_watch(analysis);
       problem.validate();
       workspace_.reset();
-      workspace_ = std::make_unique<Workspace>(problem, options_.null_space, options_.conjugate_gradients,
-                                               options_.equalities, options_.threads);
+      workspace_ = std::make_unique<Workspace>(problem, options_);
       analysed = true;
     }
     const Index pivoted = workspace_->system->pivoted();

@@ -7,12 +7,13 @@
 #include <stdexcept>
 
 #include "core/parallel.h"
+#include "core/scratch.h"
 
 namespace taut {
 namespace {
 
 using Rows = std::array<double, max_rows>;
-using RowsByWidth = std::array<double, max_rows * max_stencil_width>;
+using RowsByWidth = Scratch<max_rows * max_stencil_width>;
 using RowsByRows = std::array<double, max_rows * max_rows>;
 
 }  // namespace
@@ -29,7 +30,7 @@ void EliminatedSlack::set_multipliers(const Vector& multipliers) {
 }
 
 bool EliminatedSlack::is_far_inside(const Vector& x, double radius) const {
-  std::array<double, max_stencil_width> local;
+  Scratch<max_stencil_width> local(stencils().width());
   Rows c;
   for (Index element = 0; element < stencils().count(); ++element) {
     stencils().gather(element, x, local.data());
@@ -40,7 +41,7 @@ bool EliminatedSlack::is_far_inside(const Vector& x, double radius) const {
 }
 
 double EliminatedSlack::largest_change(const Vector& from, const Vector& to) const {
-  std::array<double, max_stencil_width> local;
+  Scratch<max_stencil_width> local(stencils().width());
   Rows before, after;
   double largest = 0;
   for (Index element = 0; element < stencils().count(); ++element) {
@@ -74,9 +75,10 @@ double EliminatedSlack::evaluate(Index element, const double* x, double* gradien
   const double* lambda = multipliers_.data() + element * rows;
   const double weight = constraint_.weight(element);
   Rows c, y, nearest, next;
-  RowsByWidth jacobian;
+  RowsByWidth jacobian_memory(rows * width);
+  double* jacobian = jacobian_memory.data();
   RowsByRows slope;
-  constraint_.evaluate(element, x, c.data(), gradient ? jacobian.data() : nullptr);
+  constraint_.evaluate(element, x, c.data(), gradient ? jacobian : nullptr);
   for (int i = 0; i < rows; ++i) y[i] = c[i] + lambda[i] / penalty_;
   constraint_.set().project(element, y.data(), nearest.data(), hessian ? slope.data() : nullptr);
   double value = 0;
@@ -100,7 +102,8 @@ double EliminatedSlack::evaluate(Index element, const double* x, double* gradien
     }
     constraint_.hessian(element, x, next.data(), curvature, hessian);
     // Row by row of mu (I - P') J, then J^T times it.
-    RowsByWidth stiff;
+    RowsByWidth stiff_memory(rows * width);
+    double* stiff = stiff_memory.data();
     for (int k = 0; k < width; ++k) {
       for (int i = 0; i < rows; ++i) {
         double sum = jacobian[k * rows + i];
@@ -146,10 +149,10 @@ struct EliminatedSlack::Path {
         correction(r, count),
         square(count) {}
 
-  /// A local matrix of fixed size where R and W are positive, else of any size that stencils and rows can have.
+  /// A local matrix of fixed size where R and W are positive; where they are Eigen::Dynamic, of up to max_rows rows and
+  /// any width.
   template <int R, int W>
-  using Local = Eigen::Matrix < double,
-        R < 0 ? Eigen::Dynamic : R, W < 0 ? Eigen::Dynamic : W, 0, R < 0 ? max_rows : R, W<0 ? max_stencil_width : W>;
+  using Local = Eigen::Matrix<double, R, W, 0, (R < 0 ? max_rows : R), W>;
   /// r = D^{-1} (F + mu dP_s/depsilon depsilon), with `change` = mu depsilon.
   template <int R>
   void aim(Index element, double change) {
@@ -178,9 +181,11 @@ struct EliminatedSlack::Path {
     const Eigen::Map<const Local<R, W>> j(jacobian.col(element).data(), rows, width);
     const Eigen::Map<const Local<R, R>> d_inverse(inverse.col(element).data(), rows, rows);
     const Local<R, R> w = penalty * (d_inverse - Local<R, R>::Identity(rows, rows));
-    const Local<R, W> stiff = w.lazyProduct(j);
-    Eigen::Map<Local<W, W>> h(out, width, width);
-    for (int k = 0; k < width; ++k) h.col(k) = weight * (h.col(k) + j.transpose().lazyProduct(stiff.col(k)));
+    Eigen::Map<Eigen::Matrix<double, W, W>> h(out, width, width);
+    for (int k = 0; k < width; ++k) {
+      const Local<R, 1> stiff = w.lazyProduct(j.col(k));
+      h.col(k) = weight * (h.col(k) + j.transpose().lazyProduct(stiff));
+    }
   }
 
   /// What strain limits in matrix form have, and most scenes have nothing else.
@@ -200,7 +205,7 @@ EliminatedSlack::Mismatch EliminatedSlack::set_point(const Vector& x, double eps
   Path& path = *path_;
   path.epsilon = epsilon;
   path.for_ranges(threads, [&](Index first, Index last) {
-    std::array<double, max_stencil_width> local;
+    Scratch<max_stencil_width> local(stencils().width());
     Rows c, y, nearest;
     for (Index element = first; element < last; ++element) {
       stencils().gather(element, x, local.data());
@@ -239,7 +244,7 @@ void EliminatedSlack::aim(double target_epsilon, int threads, Vector& gradient) 
       path.is_triangle() ? path.aim<3>(element, change) : path.aim<-1>(element, change);
     }
   });
-  std::array<double, max_stencil_width> force;
+  Scratch<max_stencil_width> force(path.width);
   for (Index element = 0; element < path.square.size(); ++element) {
     path_gradient(element, path.correction.col(element).data(), force.data());
     const int* variables = stencils()[element];
@@ -276,7 +281,7 @@ void EliminatedSlack::multiplier_step(const Vector& dx, int threads, Vector& ste
   const Path& path = *path_;
   step.resize(multipliers_.size());
   path.for_ranges(threads, [&](Index first, Index last) {
-    std::array<double, max_stencil_width> moved;
+    Scratch<max_stencil_width> moved(path.width);
     for (Index element = first; element < last; ++element) {
       stencils().gather(element, dx, moved.data());
       double* out = step.data() + element * path.rows;
@@ -295,7 +300,7 @@ void EliminatedSlack::updated_multipliers(const Vector& x, double cap, Vector& u
     return;
   }
   updated.resize(multipliers_.size());
-  std::array<double, max_stencil_width> local;
+  Scratch<max_stencil_width> local(stencils().width());
   Rows c, y, nearest;
   for (Index element = 0; element < stencils().count(); ++element) {
     stencils().gather(element, x, local.data());
@@ -312,9 +317,9 @@ void EliminatedSlack::updated_multipliers(const Vector& x, double cap, Vector& u
 void EliminatedSlack::add_update_force(const Vector& x, Vector& force) const {
   if (left_out_) return;
   const int rows = constraint_.rows(), width = stencils().width();
-  std::array<double, max_stencil_width> local;
+  Scratch<max_stencil_width> local(width);
   Rows c, y, nearest;
-  RowsByWidth jacobian;
+  RowsByWidth jacobian(rows * width);
   for (Index element = 0; element < stencils().count(); ++element) {
     stencils().gather(element, x, local.data());
     const double* lambda = multipliers_.data() + element * rows;

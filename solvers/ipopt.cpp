@@ -226,7 +226,7 @@ void configure(const IpoptOptions& options, bool warm, ::Ipopt::IpoptApplication
 /// lambda/penalty.
 Vector projected(const Constraint& constraint, const Vector& x, const Vector& lambda, double penalty) {
   const int rows = constraint.rows();
-  std::array<double, max_stencil_width> local;
+  Vector local(constraint.stencils().width());
   std::array<double, max_rows> c, nearest;
   Vector result(lambda.size());
   for (Index element = 0; element < constraint.stencils().count(); ++element) {
@@ -237,12 +237,6 @@ Vector projected(const Constraint& constraint, const Vector& x, const Vector& la
     result.segment(element * rows, rows) = penalty * (z - Eigen::Map<const Vector>(nearest.data(), rows));
   }
   return result;
-}
-
-double merit(const Residuals& r, const Tolerances& t) {
-  if (!r.finite) return std::numeric_limits<double>::infinity();
-  return std::max(
-      {r.stationarity / t.stationarity, r.feasibility / t.feasibility, r.complementarity / t.complementarity});
 }
 
 /// Keeps the multipliers as they are or projects them, as the residuals prefer; returns the residuals.
@@ -257,20 +251,22 @@ Residuals judge_best(const Problem& problem, const Tolerances& tolerances, Resul
         candidate.multipliers[k] = projected(*problem.constraints[k], result.x, raw[k], factor * largest);
     }
     const Residuals judged = residuals(problem, candidate);
-    if (!(merit(judged, tolerances) < merit(best, tolerances))) continue;
+    if (!(judged.over(tolerances) < best.over(tolerances))) continue;
     best = judged;
     result.multipliers = std::move(candidate.multipliers);
   }
   return best;
 }
 
+bool claims_success(ApplicationReturnStatus ending) {
+  return ending == ::Ipopt::Solve_Succeeded || ending == ::Ipopt::Solved_To_Acceptable_Level ||
+         ending == ::Ipopt::Feasible_Point_Found;
+}
+
 /// Status and message of an ending that the residuals do not call solved.
 std::pair<Status, const char*> unsolved(ApplicationReturnStatus ending) {
+  if (claims_success(ending)) return {Status::stalled, "Ipopt claims success, the residuals do not agree"};
   switch (ending) {
-    case ::Ipopt::Solve_Succeeded:
-    case ::Ipopt::Solved_To_Acceptable_Level:
-    case ::Ipopt::Feasible_Point_Found:
-      return {Status::stalled, "Ipopt claims success, the residuals do not agree"};
     case ::Ipopt::Infeasible_Problem_Detected:
       return {Status::infeasible, "Ipopt converged to a point of local infeasibility"};
     case ::Ipopt::Diverging_Iterates:
@@ -377,6 +373,7 @@ void Ipopt::run(const Problem& problem, const WarmStart& warm, const Budget& bud
     result.message = "a value or derivative is not finite at the last point";
   } else {
     std::tie(result.status, result.message) = unsolved(ending);
+    result.overruled = claims_success(ending);
   }
 }
 

@@ -254,12 +254,6 @@ Vector recovered(NonlinearProgram& program, const Callbacks& callbacks, const Ve
   return nu;
 }
 
-double merit(const Residuals& r, const Tolerances& t) {
-  if (!r.finite) return std::numeric_limits<double>::infinity();
-  return std::max(
-      {r.stationarity / t.stationarity, r.feasibility / t.feasibility, r.complementarity / t.complementarity});
-}
-
 /// Recovers multipliers for several ideas of "active" and keeps those that the residuals like best. Beside multipliers
 /// without bound, which least squares finds on rows that nearly depend on each other, any force looks balanced: they
 /// are left out.
@@ -274,7 +268,7 @@ void judge_best(const Problem& problem, NonlinearProgram& program, const Callbac
     Result candidate = result;
     candidate.multipliers = program.multipliers(y, recovered(program, callbacks, y, distance));
     const Residuals judged = residuals(problem, candidate);
-    if (!(judged.force_scale <= largest_scale && merit(judged, tolerances) < merit(best, tolerances))) continue;
+    if (!(judged.force_scale <= largest_scale && judged.over(tolerances) < best.over(tolerances))) continue;
     best = judged;
     result.multipliers = std::move(candidate.multipliers);
   }
@@ -308,7 +302,8 @@ void say_unsolved(nlopt_result code, const Budget& budget, Result& result) {
     result.message = "more equations than unknowns, which NLopt refuses";
   } else {
     result.status = Status::stalled;
-    result.message = says + (code > 0 ? ", the residuals do not agree" : "");
+    result.overruled = code > 0;
+    result.message = says + (result.overruled ? ", the residuals do not agree" : "");
   }
 }
 
@@ -344,7 +339,7 @@ Result Nlopt::solve(const Problem& problem, const WarmStart& /*warm*/, const Bud
       attempt.counts = result.counts;
       attempt.timings = result.timings;
       code = improve(problem, program, options_, budget, y, attempt);
-      const double reached = merit(residuals(problem, attempt), options_.tolerances);
+      const double reached = residuals(problem, attempt).over(options_.tolerances);
       const bool better = reached < 0.5 * best || result.x.size() == 0;
       result.counts = attempt.counts;
       result.timings = attempt.timings;

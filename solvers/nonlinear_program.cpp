@@ -7,6 +7,7 @@
 #include <deque>
 
 #include "core/assembly.h"
+#include "core/scratch.h"
 #include "solvers/equality_rows.h"
 
 namespace taut {
@@ -35,10 +36,12 @@ class Scaled final : public Energy {
 
 /// One element's c and g with their first derivatives.
 struct Rows {
-  std::array<double, max_stencil_width> x;
+  explicit Rows(const Constraint& constraint)
+      : x(constraint.stencils().width()), c_jacobian(constraint.rows() * constraint.stencils().width()) {}
+  Scratch<max_stencil_width> x;
   std::array<double, max_rows> c;
   std::array<double, max_smooth_rows> g;
-  std::array<double, max_rows * max_stencil_width> c_jacobian;
+  Scratch<max_rows * max_stencil_width> c_jacobian;
   std::array<double, max_smooth_rows * max_rows> g_jacobian;
 };
 
@@ -58,7 +61,7 @@ class WeightedRows final : public Energy {
   double evaluate(Index element, const double* x, double* gradient, double* hessian,
                   Curvature /*curvature*/) const override {
     const int rows = constraint_.set().smooth_rows(), dimension = constraint_.rows(), width = stencils().width();
-    Rows local;
+    Rows local(constraint_);
     evaluate_rows(constraint_, element, x, gradient != nullptr, local);
     const auto nu = nu_.segment(first_row_ + element * rows, rows);
     const double value = nu.dot(Eigen::Map<const Vector>(local.g.data(), rows));
@@ -199,9 +202,9 @@ void NonlinearProgram::Data::build_hessian(const Problem& problem) {
 template <class Visit>
 void NonlinearProgram::Data::for_elements(const Vector& y, bool derivatives, const Visit& visit) {
   const Vector& x = expand(y);
-  Rows local;
   for (std::size_t k = 0; k < constraints.size(); ++k) {
     const Constraint& constraint = *constraints[k];
+    Rows local(constraint);
     for (Index element = 0; element < constraint.stencils().count(); ++element) {
       constraint.stencils().gather(element, x, local.x.data());
       evaluate_rows(constraint, element, local.x.data(), derivatives, local);
@@ -247,7 +250,7 @@ double NonlinearProgram::gradient(const Vector& y, Vector& gradient) {
 
 void NonlinearProgram::constraints(const Vector& y, Vector& g) const {
   g.resize(rows());
-  data_->for_elements(y, false, [&](std::size_t k, Index, Index first, const Rows& local) {
+  data_->for_elements(y, false, [&](std::size_t k, Index, Index first, Rows& local) {
     std::copy_n(local.g.data(), data_->constraints[k]->set().smooth_rows(), g.data() + first);
   });
   if (data_->equalities.count() == 0) return;
@@ -257,7 +260,7 @@ void NonlinearProgram::constraints(const Vector& y, Vector& g) const {
 void NonlinearProgram::jacobian(const Vector& y, Vector& values) const {
   values.resize(static_cast<Index>(data_->jacobian.rows.size()));
   Index next = 0;
-  data_->for_elements(y, true, [&](std::size_t k, Index element, Index, const Rows& local) {
+  data_->for_elements(y, true, [&](std::size_t k, Index element, Index, Rows& local) {
     const Constraint& constraint = *data_->constraints[k];
     const int rows = constraint.set().smooth_rows(), dimension = constraint.rows();
     const Eigen::Map<const Matrix> g_jacobian(local.g_jacobian.data(), rows, dimension);
@@ -285,7 +288,7 @@ std::vector<Vector> NonlinearProgram::multipliers(const Vector& y, const Vector&
   std::vector<Vector> result;
   for (const Constraint* constraint : data_->constraints)
     result.emplace_back(Vector::Zero(constraint->stencils().count() * constraint->rows()));
-  data_->for_elements(y, true, [&](std::size_t k, Index element, Index first, const Rows& local) {
+  data_->for_elements(y, true, [&](std::size_t k, Index element, Index first, Rows& local) {
     const Constraint& constraint = *data_->constraints[k];
     const int rows = constraint.set().smooth_rows(), dimension = constraint.rows();
     const Eigen::Map<const Matrix> g_jacobian(local.g_jacobian.data(), rows, dimension);
@@ -299,7 +302,7 @@ std::vector<Vector> NonlinearProgram::multipliers(const Vector& y, const Vector&
 Vector NonlinearProgram::row_multipliers(const Vector& y, const std::vector<Vector>& multipliers) const {
   Vector nu = Vector::Zero(rows());
   if (multipliers.empty()) return nu;
-  data_->for_elements(y, true, [&](std::size_t k, Index element, Index first, const Rows& local) {
+  data_->for_elements(y, true, [&](std::size_t k, Index element, Index first, Rows& local) {
     const Constraint& constraint = *data_->constraints[k];
     const int rows = constraint.set().smooth_rows(), dimension = constraint.rows();
     const Vector lambda = constraint.weight(element) * multipliers[k].segment(element * dimension, dimension);

@@ -36,6 +36,7 @@ void add_modes(CLI::App& program, int& code);
 void add_replay(CLI::App& program, int& code);
 void add_stress(CLI::App& program, int& code);
 void add_compare_worker(CLI::App& program, int& code);  // what compare starts; in no help
+void add_suite_worker(CLI::App& program);               // the same with --suite
 
 /// The folder of the problems that come with the program: beside an installed program, or else in the sources.
 std::filesystem::path catalogue_folder();

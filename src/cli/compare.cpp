@@ -19,9 +19,11 @@
 #include "files/atomic_file.h"
 #include "report/compare_report.h"
 #include "report/compare_tables.h"
+#include "report/suite_report.h"
 #include "study/compare_job.h"
 #include "study/compare_json.h"
 #include "study/solver_entries.h"
+#include "study/suite.h"
 
 namespace taut {
 namespace fs = std::filesystem;
@@ -30,7 +32,7 @@ namespace {
 struct CompareArguments {
   std::vector<std::string> problems, solvers, settings, variations;
   std::vector<double> tolerances;
-  std::string reference, out;
+  std::string suite, reference, out;
   int steps = 0, repeat = 1, threads = 1;
   double time_limit = 600, memory_limit = 8192;
   bool free = false, cold = false, resume = false, json = false, quiet = false;
@@ -73,8 +75,68 @@ int exit_code(const Comparison& comparison) {
   return exit_solved;
 }
 
+/// Models have no steps, no trajectory and no reference for it.
+void check_suite(const CompareArguments& arguments) {
+  if (!arguments.problems.empty() || !arguments.reference.empty() || arguments.steps > 0 || arguments.free ||
+      arguments.cold || arguments.resume || arguments.threads != 1)
+    throw UsageError("--suite takes no PROBLEM, --reference, --steps, --free, --cold, --resume and --threads");
+  const fs::path out = arguments.out;
+  std::error_code error;
+  if (fs::exists(out, error) && !fs::is_empty(out, error) && !fs::exists(out / "compare.json", error))
+    throw UsageError(arguments.out + ": is not empty and holds no comparison of taut; choose another directory");
+}
+
+int compare_on_suite(const CompareArguments& arguments) {
+  check_suite(arguments);
+  SuiteOptions options;
+  options.folder = arguments.suite;
+  options.choice.solvers = arguments.solvers;
+  if (options.choice.solvers.empty()) options.choice.solvers = {"augmented_lagrangian", "ipopt", "nlopt"};
+  options.choice.tolerances = arguments.tolerances;
+  options.choice.settings = parse_settings(arguments.settings);
+  for (const std::string& text : arguments.variations) options.choice.variations.push_back(parse_variation(text));
+  options.repeat = arguments.repeat;
+  options.time_limit = arguments.time_limit;
+  options.memory_limit_bytes = static_cast<std::int64_t>(arguments.memory_limit * (1 << 20));
+  options.worker = {"/proc/self/exe", "suite-worker"};
+  options.version = TAUT_VERSION;
+  options.stop = &stop_on_signals();
+  const TemporaryFolder logs;
+  options.logs = logs.path();
+
+  std::unique_ptr<Progress> progress;
+  long done = 0;
+  if (!arguments.quiet) {
+    options.on_start = [&](int processes) { progress = std::make_unique<Progress>("compare", processes, stderr); };
+    options.on_run = [&](const SuiteModel& model, const SuiteEntry& entry, const SuiteRun& run) {
+      progress->update(++done, fmt::format("{}, {}: {}", model.name, entry.chosen.label,
+                                           run.outcome == "finished" ? to_string(run.status) : run.outcome));
+    };
+  }
+  const Suite suite = run_suite(options);
+  if (progress && !suite.interrupted) progress->finish();
+  progress.reset();
+  if (!arguments.out.empty()) {
+    std::error_code error;
+    fs::create_directories(arguments.out, error);
+    write_atomically(fs::path(arguments.out) / "compare.json", suite_text(suite));
+    write_atomically(fs::path(arguments.out) / "compare.md", suite_markdown(suite));
+    write_atomically(fs::path(arguments.out) / "compare.csv", suite_csv(suite));
+  }
+  const std::string text = arguments.json    ? suite_text(suite)
+                           : arguments.quiet ? ""
+                                             : suite_terminal(suite, arguments.out);
+  const bool printed = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+  if (arguments.report.wanted()) arguments.report.write(suite_report(suite, typed_command()), arguments.quiet);
+  if (!printed) return exit_internal_error;
+  return suite.interrupted ? exit_interrupted : exit_solved;
+}
+
 int compare_solvers(const CompareArguments& arguments) {
   arguments.report.check();
+  if (!arguments.suite.empty()) return compare_on_suite(arguments);
+  if (arguments.problems.empty() || arguments.solvers.empty())
+    throw UsageError("compare needs a PROBLEM and --solvers, or --suite DIR; see taut compare --help");
   if (arguments.resume && arguments.out.empty())
     throw UsageError("--resume needs --out DIR, the directory of the comparison to go on with");
   CompareOptions options = options_of(arguments);
@@ -127,14 +189,18 @@ std::string footer() {
          "  taut compare hanging_cloth --solvers augmented_lagrangian,multiplier_loop --steps 10\n"
          "  taut compare hanging_cloth --solvers augmented_lagrangian --vary "
          "constraints.limit.form=matrix,singular_values\n"
-         "  taut compare a.json b.json --solvers augmented_lagrangian --tolerances 1e-6,1e-8 --repeat 5 --out out/ab";
+         "  taut compare a.json b.json --solvers augmented_lagrangian --tolerances 1e-6,1e-8 --repeat 5 --out out/ab\n"
+         "  taut compare --suite problems/nl --vary solver.starts=1,8 --time-limit 20 --report out/suite";
 }
 
 void add_choice(CLI::App& command, CompareArguments& arguments) {
   const auto list = CLI::MultiOptionPolicy::TakeAll;
-  command.add_option("PROBLEM", arguments.problems, "Problem files, or names of problems of the catalogue")->required();
+  command.add_option("PROBLEM", arguments.problems, "Problem files, or names of problems of the catalogue");
+  command
+      .add_option("--suite", arguments.suite,
+                  "Instead of problems a folder of AMPL models (.nl); without --solvers: ours, ipopt and nlopt")
+      ->type_name("DIR");
   command.add_option("--solvers", arguments.solvers, "Which solvers, separated by commas")
-      ->required()
       ->type_name("A,B,...")
       ->expected(1)
       ->delimiter(',')
@@ -200,6 +266,24 @@ void add_compare_worker(CLI::App& program, int& code) {
   const auto job = std::make_shared<std::string>();
   command->add_option("JOB", *job, "Its job file")->required();
   command->callback([job, &code] { code = work(*job); });
+}
+
+void add_suite_worker(CLI::App& program) {
+  struct Arguments {
+    std::string model;
+    std::vector<std::string> settings;
+    int repeat = 1;
+    double max_seconds = 0;
+  };
+  CLI::App* command = program.add_subcommand("suite-worker", "One process of taut compare --suite")->group("");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("MODEL", arguments->model)->required();
+  command->add_option("--set", arguments->settings)->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_option("--repeat", arguments->repeat);
+  command->add_option("--max-seconds", arguments->max_seconds);
+  command->callback([arguments] {
+    try_model(arguments->model, parse_settings(arguments->settings), arguments->repeat, arguments->max_seconds);
+  });
 }
 
 }  // namespace taut

@@ -5,12 +5,14 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string_view>
 
 #include "cli/commands.h"
 #include "cli/stop_signals.h"
 #include "problems/nl_model.h"
+#include "report/model_report.h"
 #include "report/terminal_summary.h"
 #include "study/records_json.h"
 #include "study/solve_model.h"
@@ -89,6 +91,8 @@ int solve_model_file(const ModelArguments& arguments) {
                                              : fmt::format("objective {:.10g}\n", solution.summary.objective) +
                                                    terminal_summary(solution.summary, arguments.out);
   const bool printed = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+  if (arguments.report.wanted())
+    arguments.report.write(model_report(model, solution, settings, typed_command()), arguments.quiet);
   return printed ? exit_code(solution.summary.status) : exit_internal_error;
 }
 

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "cli/report_option.h"
 #include "problems/read_scene.h"
 
 namespace taut {
@@ -11,6 +12,7 @@ struct ModelArguments {
   Overrides settings;
   double max_seconds = 0;  ///< 0: no limit
   bool json = false, quiet = false;
+  ReportOption report;
 };
 
 /// `taut solve MODEL.nl`; returns the exit code.

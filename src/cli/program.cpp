@@ -88,6 +88,7 @@ int run_program(int argc, char** argv) {
   add_modes(program, code);
   add_replay(program, code);
   add_compare_worker(program, code);
+  add_suite_worker(program);
   return guarded([&]() -> int {
     try {
       program.parse(argc, argv);

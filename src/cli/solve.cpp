@@ -29,6 +29,7 @@ struct SolveArguments {
   std::string problem, out, format, accelerations;
   std::vector<std::string> settings;
   int threads = 0, history = 0;
+  std::pair<int, std::string> exported;  // step and file
   double max_seconds = 0;
   bool resume = false, json = false, quiet = false;
   ReportOption report;
@@ -59,11 +60,11 @@ std::string run_folder(const SolveArguments& arguments) {
 /// A model has no steps to resume, no frames and no modes.
 int solve_model(const SolveArguments& arguments) {
   if (arguments.resume || arguments.history > 0 || !arguments.accelerations.empty() || !arguments.format.empty() ||
-      arguments.report.wanted())
-    throw UsageError("--resume, --history, --format, --report and --record-accelerations are for scenes; " +
+      arguments.exported.first > 0)
+    throw UsageError("--resume, --history, --export-step, --format and --record-accelerations are for scenes; " +
                      arguments.problem + " is an optimisation model");
   return solve_model_file({arguments.problem, arguments.out, parse_settings(arguments.settings), arguments.max_seconds,
-                           arguments.json, arguments.quiet});
+                           arguments.json, arguments.quiet, arguments.report});
 }
 
 int solve(const SolveArguments& arguments) {
@@ -72,6 +73,8 @@ int solve(const SolveArguments& arguments) {
     throw UsageError("--resume needs --out DIR, the directory of the run to go on with");
   if (arguments.resume && !arguments.accelerations.empty())
     throw UsageError("--record-accelerations needs a run from its beginning, without --resume");
+  if (arguments.resume && arguments.exported.first > 0)
+    throw UsageError("--export-step needs a run from its beginning, without --resume");
   if (std::filesystem::path(arguments.problem).extension() == ".nl") return solve_model(arguments);
   if (arguments.history > 0 && arguments.out.empty())
     throw UsageError("--history needs --out DIR, which it is written to");
@@ -79,6 +82,9 @@ int solve(const SolveArguments& arguments) {
   const Scene scene = read_scene(find_problem(arguments.problem), overrides_of(arguments));
   if (arguments.history > scene.time.steps)
     throw UsageError(fmt::format("--history {}: {} has {} steps", arguments.history, scene.name, scene.time.steps));
+  if (arguments.exported.first > scene.time.steps)
+    throw UsageError(
+        fmt::format("--export-step {}: {} has {} steps", arguments.exported.first, scene.name, scene.time.steps));
 
   std::unique_ptr<Progress> progress;
   RunOptions options;
@@ -88,6 +94,8 @@ int solve(const SolveArguments& arguments) {
   options.threads = arguments.threads;
   options.max_seconds = arguments.max_seconds;
   options.history_step = arguments.history;
+  options.export_step = arguments.exported.first;
+  options.export_file = arguments.exported.second;
   options.stop = &stop_requested;
   options.version = TAUT_VERSION;
   if (!arguments.quiet) {
@@ -136,6 +144,7 @@ constexpr const char* footer =
     "  taut solve problem.json --out out/long --max-seconds 3600     and later, the same with --resume\n"
     "  taut solve hanging_cloth --report out/report\n"
     "  taut solve problem.json --json | jq .status\n"
+    "  taut solve hanging_cloth --set time.steps=5 --export-step 5 out/step.nl\n"
     "  taut solve model.nl --set solver.tolerance.feasibility=1e-9 --out out/model\n"
     "                                            an optimisation model of AMPL, Pyomo or JuMP";
 
@@ -182,6 +191,17 @@ void add_solve(CLI::App& program, int& code) {
                    "Judge every iterate of this step and write them to DIR/history.csv (taut chart)")
       ->type_name("STEP")
       ->check(CLI::Range(1, 1000000000));
+  command
+      ->add_option("--export-step", arguments->exported,
+                   "Write this step as an AMPL model (.nl) for other solvers, before it is solved")
+      ->type_name("STEP FILE")
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            const bool file = std::filesystem::path(text).extension() == ".nl";
+            return file || std::atoi(text.c_str()) > 0 ? ""
+                                                       : "expected a step from 1 on and a file FILE.nl, got " + text;
+          },
+          ""));
   command->add_flag("--resume", arguments->resume,
                     "Go on with the run in DIR; ends with the bits of one never interrupted");
   add_report_option(*command, arguments->report);

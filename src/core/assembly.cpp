@@ -1,13 +1,13 @@
 #include "core/assembly.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
 #include <string>
 
 #include "core/parallel.h"
+#include "core/scratch.h"
 
 namespace taut {
 namespace {
@@ -44,8 +44,8 @@ double Term::evaluate(Index element, const double* x, double* gradient, double* 
   double value = energies.front()->evaluate(element, x, gradient, hessian, curvature);
   if (energies.size() == 1) return value;
   const int width = stencils().width();
-  std::array<double, max_stencil_width> more_gradient;
-  std::array<double, max_stencil_width * max_stencil_width> more_hessian;
+  Scratch<max_stencil_width> more_gradient(width);
+  Scratch<max_stencil_width * max_stencil_width> more_hessian(width * width);
   for (std::size_t k = 1; k < energies.size(); ++k) {
     value += energies[k]->evaluate(element, x, gradient ? more_gradient.data() : nullptr,
                                    hessian ? more_hessian.data() : nullptr, curvature);
@@ -338,9 +338,9 @@ double Assembly::Data::sum_of_values() const {
 double Assembly::value(const Vector& x) const {
   const Data& d = *data_;
   parallel_for(d.threads, [&](int thread) {
-    std::array<double, max_stencil_width> local;
     for (const Term& term : d.terms) {
       const Stencils& stencils = term.stencils();
+      Scratch<max_stencil_width> local(stencils.width());
       const Index first = stencils.count() * thread / d.threads, last = stencils.count() * (thread + 1) / d.threads;
       for (Index element = first; element < last; ++element) {
         stencils.gather(element, x, local.data());
@@ -355,9 +355,9 @@ double Assembly::gradient(const Vector& x, Vector& gradient) const {
   const Data& d = *data_;
   gradient.setZero(d.size);
   parallel_for(d.threads, [&](int thread) {
-    std::array<double, max_stencil_width> local, part;
     for (const Term& term : d.terms) {
       const Stencils& stencils = term.stencils();
+      Scratch<max_stencil_width> local(stencils.width()), part(stencils.width());
       for_elements(term, thread, d.threads, [&](Index element) {
         stencils.gather(element, x, local.data());
         const double value = term.evaluate(element, local.data(), part.data(), nullptr, Curvature::exact);
@@ -401,8 +401,6 @@ void Assembly::Data::mask(const Term& term, Index element, double* hessian) cons
 
 template <int B>
 void Assembly::Data::add_hessian(int thread, const Vector& x, Curvature curvature, Vector* total) {
-  std::array<double, max_stencil_width> local, gradient;
-  std::array<double, max_stencil_width * max_stencil_width> hessian;
   double* values = matrix.valuePtr();
   const int first = matrix.outerIndexPtr()[range[thread] * B], last = matrix.outerIndexPtr()[range[thread + 1] * B];
   std::fill(values + first, values + last, 0.0);
@@ -411,6 +409,8 @@ void Assembly::Data::add_hessian(int thread, const Vector& x, Curvature curvatur
     if (!curved && !total) continue;
     const Stencils& stencils = term.stencils();
     const int width = stencils.width(), blocks = term.groups * (term.groups + 1) / 2;
+    Scratch<max_stencil_width> local(width), gradient(width);
+    Scratch<max_stencil_width * max_stencil_width> hessian(width * width);
     for_elements(term, thread, threads, [&](Index element) {
       stencils.gather(element, x, local.data());
       term.evaluate(element, local.data(), gradient.data(), curved ? hessian.data() : nullptr, curvature);
@@ -456,11 +456,11 @@ const SparseMatrix& Assembly::matrix() const { return data_->matrix; }
 double Assembly::largest_step(const Vector& x, const Vector& dx) const {
   const Data& d = *data_;
   double largest = std::numeric_limits<double>::infinity();
-  std::array<double, max_stencil_width> local, step;
   for (const Term& term : d.terms) {
     for (const Energy* energy : term.energies) {
       if (!energy->guards_steps()) continue;
       const Stencils& stencils = energy->stencils();
+      Scratch<max_stencil_width> local(stencils.width()), step(stencils.width());
       for (Index element = 0; element < stencils.count(); ++element) {
         stencils.gather(element, x, local.data());
         stencils.gather(element, dx, step.data());

@@ -7,10 +7,6 @@ namespace taut {
 namespace {
 
 void check_stencils(const std::string& owner, const Stencils& stencils, Index size) {
-  if (stencils.width() > max_stencil_width) {
-    throw std::invalid_argument(owner + ": stencil width " + std::to_string(stencils.width()) + " exceeds " +
-                                std::to_string(max_stencil_width));
-  }
   for (Index element = 0; element < stencils.count(); ++element) {
     for (int i = 0; i < stencils.width(); ++i) {
       const int variable = stencils[element][i];

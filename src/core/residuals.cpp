@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
+
+#include "core/scratch.h"
 
 namespace taut {
 namespace {
@@ -54,7 +57,7 @@ void check_multipliers(const Problem& problem, const std::vector<Vector>& multip
 /// domain).
 bool add_gradient(const Energy& energy, const Vector& x, Vector& force) {
   const Stencils& stencils = energy.stencils();
-  std::array<double, max_stencil_width> local, gradient;
+  Scratch<max_stencil_width> local(stencils.width()), gradient(stencils.width());
   bool finite = true;
   for (Index element = 0; element < stencils.count(); ++element) {
     stencils.gather(element, x, local.data());
@@ -70,9 +73,9 @@ void judge(const Constraint& constraint, const Vector& x, const Vector& multipli
            Residuals& residuals) {
   const Stencils& stencils = constraint.stencils();
   const int rows = constraint.rows(), width = stencils.width();
-  std::array<double, max_stencil_width> local;
+  Scratch<max_stencil_width> local(width);
   std::array<double, max_rows> c, moved, nearest, nearest_moved;
-  std::array<double, max_rows * max_stencil_width> jacobian;
+  Scratch<max_rows * max_stencil_width> jacobian(rows * width);
 
   double scale = 0;
   for (Index element = 0; element < stencils.count(); ++element) {
@@ -135,6 +138,11 @@ void Tolerances::validate() const {
 bool Residuals::within(const Tolerances& tolerances) const {
   return finite && stationarity <= tolerances.stationarity && feasibility <= tolerances.feasibility &&
          complementarity <= tolerances.complementarity;
+}
+
+double Residuals::over(const Tolerances& t) const {
+  if (!finite) return std::numeric_limits<double>::infinity();
+  return std::max({stationarity / t.stationarity, feasibility / t.feasibility, complementarity / t.complementarity});
 }
 
 Judge::Judge(const Problem& problem, const Vector& x)

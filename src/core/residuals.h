@@ -41,6 +41,8 @@ struct Residuals {
   bool finite = true;
 
   bool within(const Tolerances& tolerances) const;
+  /// The largest of the three in units of its tolerance, infinite where not finite.
+  double over(const Tolerances& tolerances) const;
 };
 
 /// Judges any number of multipliers at one point, where the forces of the energies are computed once. Both arguments

@@ -59,6 +59,8 @@ struct Result {
   Counts counts;
   Timings timings;
   std::string message;  ///< one sentence on why it ended so
+  /// The library behind the solver claims success, which the residuals do not call solved.
+  bool overruled = false;
 };
 
 }  // namespace taut

@@ -35,7 +35,7 @@ class Stencils {
   std::vector<int> variables_;
 };
 
-/// No stencil is wider than this, so that loops over elements need no allocation. Warped modes need one variable each.
+/// Elements with more variables need allocations (scratch.h); no scene has any, warped modes need one variable each.
 inline constexpr int max_stencil_width = 64;
 /// No constraint has more rows per element than this.
 inline constexpr int max_rows = 6;

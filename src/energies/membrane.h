@@ -33,6 +33,9 @@ class Membrane final : public Energy {
   bool guards_steps() const override { return law_ == MembraneLaw::neo_hookean; }
   double largest_step(Index element, const double* x, const double* dx) const override;
   const std::vector<RestTriangle>& triangles() const { return triangles_; }
+  MembraneLaw law() const { return law_; }
+  Lame lame() const { return lame_; }
+  double thickness() const { return thickness_; }
 
  private:
   double evaluate_stvk(const RestTriangle& triangle, const double* x, double* gradient, double* hessian,

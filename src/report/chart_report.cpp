@@ -9,6 +9,7 @@
 
 #include "report/chart_tables.h"
 #include "report/command_text.h"
+#include "report/profile_chart.h"
 #include "study/pareto.h"
 
 namespace taut {
@@ -147,47 +148,16 @@ void add_histories(const ProblemChart& problem, const std::string& name, Json& c
   }
 }
 
-/// Steps up to where the last of all solvers ends.
-Json profile_chart(const ChartData& chart, const std::string& id, const std::string& title, const std::string& x_label,
-                   double first, const std::vector<Profile>& profiles) {
-  double last = first;
-  for (const Profile& profile : profiles) {
-    if (!profile.x.empty()) last = std::max(last, profile.x.back());
-  }
-  Json series = Json::array();
-  for (std::size_t solver = 0; solver < profiles.size(); ++solver) {
-    const Profile& profile = profiles[solver];
-    Json points = Json::array();
-    const auto add = [&points](double x, double y) { points.push_back({{"x", x}, {"y", y}}); };
-    double share = 0;
-    add(first, profile(first));
-    for (std::size_t k = 0; k < profile.x.size(); ++k) {
-      if (profile.x[k] > first) {
-        add(profile.x[k], share);
-        add(profile.x[k], profile.share[k]);
-      }
-      share = profile.share[k];
-    }
-    add(1.1 * last, share);
-    series.push_back({{"name", chart.solvers[solver]}, {"line", true}, {"points", points}});
-  }
-  return {{"id", id},
-          {"title", title},
-          {"x", axis(x_label)},
-          {"y", axis("share of instances solved correctly", false)},
-          {"series", series}};
-}
-
 void add_profiles(const ChartData& chart, Json& charts) {
   const ChartProfiles profiles = profiles_of(chart);
-  charts.push_back(profile_chart(chart, "performance_profile", "Performance profile", "seconds / those of the fastest",
-                                 1, profiles.performance));
+  charts.push_back(profile_chart("performance_profile", "Performance profile", "seconds / those of the fastest", 1,
+                                 chart.solvers, profiles.performance));
   double first = 1e300;
   for (const Profile& profile : profiles.data) {
     if (!profile.x.empty()) first = std::min(first, profile.x.front() / 1.1);
   }
-  charts.push_back(profile_chart(chart, "data_profile", "Data profile", "linear solves a step",
-                                 first < 1e300 ? first : 1, profiles.data));
+  charts.push_back(profile_chart("data_profile", "Data profile", "linear solves a step", first < 1e300 ? first : 1,
+                                 chart.solvers, profiles.data));
 }
 
 Json table_json(const std::string& id, const std::string& title, const TextTable& table) {

@@ -22,19 +22,7 @@ void take_outcome(const ChildOutcome& child, const fs::path& folder, EntryRun& r
   run.seconds = child.seconds;
   run.peak_memory_bytes = child.peak_memory_bytes;
   run.message = last_line(folder / log_file);
-  if (child.end == ChildEnd::interrupted) {
-    run.outcome = "interrupted";
-  } else if (child.end == ChildEnd::time_limit || (child.end == ChildEnd::exited && child.code == worker_out_of_time)) {
-    run.outcome = "time_limit";
-  } else if (child.end == ChildEnd::crashed) {
-    run.outcome = "crash: " + signal_name(child.signal);
-  } else if (child.end == ChildEnd::memory_limit || child.code == worker_out_of_memory) {
-    run.outcome = "out_of_memory";
-  } else if (child.code == worker_refused) {
-    run.outcome = "refused";
-  } else {
-    run.outcome = child.code == worker_finished ? "finished" : "error";
-  }
+  run.outcome = outcome_of(child);
 }
 
 /// The steps that the process has finished, a half-written line left out.

@@ -50,6 +50,16 @@ CompareJob parse_job(const std::string& text) try {
   throw std::runtime_error(std::string("not a job of taut compare: ") + error.what());
 }
 
+std::string outcome_of(const ChildOutcome& child) {
+  if (child.end == ChildEnd::interrupted) return "interrupted";
+  if (child.end == ChildEnd::time_limit || (child.end == ChildEnd::exited && child.code == worker_out_of_time))
+    return "time_limit";
+  if (child.end == ChildEnd::crashed) return "crash: " + signal_name(child.signal);
+  if (child.end == ChildEnd::memory_limit || child.code == worker_out_of_memory) return "out_of_memory";
+  if (child.code == worker_refused) return "refused";
+  return child.code == worker_finished ? "finished" : "error";
+}
+
 std::filesystem::path step_file(const std::filesystem::path& folder, int step) {
   return folder / fmt::format("{:05}.bin", step);
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "problems/read_scene.h"
+#include "study/child_process.h"
 
 namespace taut {
 
@@ -48,6 +49,9 @@ enum WorkerExit {
   worker_out_of_time = 3,
   worker_out_of_memory = 4
 };
+
+/// EntryRun::outcome of a worker process.
+std::string outcome_of(const ChildOutcome& child);
 
 /// Carries out the job of a job file, in this process. Returns a WorkerExit; why it failed goes to standard error.
 int work(const std::filesystem::path& job);

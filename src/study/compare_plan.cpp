@@ -49,9 +49,9 @@ void check(const EntryChoice& choice) {
   if (!choice.reference.empty()) solver_entry(choice.reference);
 }
 
-PlannedEntry plan_entry(const std::filesystem::path& file, const EntryChoice& choice, const std::string& solver,
-                        const Overrides& varied, const double* tolerance) {
-  PlannedEntry entry;
+ChosenEntry choose(const EntryChoice& choice, const std::string& solver, const Overrides& varied,
+                   const double* tolerance) {
+  ChosenEntry entry;
   entry.label = entry.solver = solver;
   entry.overrides = choice.settings;
   for (const Setting& setting : solver_entry(solver).overrides) entry.overrides.push_back(setting);
@@ -66,13 +66,29 @@ PlannedEntry plan_entry(const std::filesystem::path& file, const EntryChoice& ch
     for (const char* residual : {"stationarity", "feasibility", "complementarity"})
       entry.overrides.emplace_back(std::string("solver.tolerance.") + residual, fmt::format("{}", *tolerance));
   }
-  entry.scene = read_scene(file, entry.overrides);
+  return entry;
+}
+
+PlannedEntry plan_entry(const std::filesystem::path& file, const ChosenEntry& chosen) {
+  PlannedEntry entry{chosen, read_scene(file, chosen.overrides)};
   build_model(entry.scene);
   build_solver(entry.scene, 1);
   return entry;
 }
 
 }  // namespace
+
+std::vector<ChosenEntry> chosen_entries(const EntryChoice& choice) {
+  check(choice);
+  std::vector<ChosenEntry> entries;
+  for (const std::string& solver : choice.solvers) {
+    for (const Overrides& varied : combinations(choice.variations)) {
+      if (choice.tolerances.empty()) entries.push_back(choose(choice, solver, varied, nullptr));
+      for (const double& tolerance : choice.tolerances) entries.push_back(choose(choice, solver, varied, &tolerance));
+    }
+  }
+  return entries;
+}
 
 double diagonal(const Vector& positions) {
   const auto points = positions.reshaped(3, positions.size() / 3);
@@ -106,19 +122,13 @@ Variation parse_variation(const std::string& text) {
 }
 
 ProblemPlan plan_problem(const std::filesystem::path& file, const EntryChoice& choice) {
-  check(choice);
+  const std::vector<ChosenEntry> entries = chosen_entries(choice);
   ProblemPlan plan;
   plan.file = file;
   const std::string& reference = choice.reference.empty() ? choice.solvers.front() : choice.reference;
-  plan.reference = plan_entry(file, choice, reference, {}, nullptr);
+  plan.reference = plan_entry(file, choose(choice, reference, {}, nullptr));
   plan.size = diagonal(build_model(plan.reference.scene)->start());
-  for (const std::string& solver : choice.solvers) {
-    for (const Overrides& varied : combinations(choice.variations)) {
-      if (choice.tolerances.empty()) plan.entries.push_back(plan_entry(file, choice, solver, varied, nullptr));
-      for (const double& tolerance : choice.tolerances)
-        plan.entries.push_back(plan_entry(file, choice, solver, varied, &tolerance));
-    }
-  }
+  for (const ChosenEntry& entry : entries) plan.entries.push_back(plan_entry(file, entry));
   return plan;
 }
 

@@ -33,9 +33,14 @@ struct EntryChoice {
   Overrides settings;              ///< of every entry, the reference included
 };
 
-struct PlannedEntry {
+struct ChosenEntry {
   std::string label, solver, group;  ///< as in EntryRun
   Overrides overrides;
+};
+/// Throws InputError for unknown solvers, std::invalid_argument for none.
+std::vector<ChosenEntry> chosen_entries(const EntryChoice& choice);
+
+struct PlannedEntry : ChosenEntry {
   Scene scene;
 };
 

@@ -60,10 +60,10 @@ std::string pins_name(const Model& model) {
 }
 
 double objective(const Problem& problem, const Vector& x) {
-  std::array<double, max_stencil_width> local;
   double sum = 0;
   for (const Energy* energy : problem.energies) {
     const Stencils& stencils = energy->stencils();
+    Vector local(stencils.width());
     for (Index element = 0; element < stencils.count(); ++element) {
       stencils.gather(element, x, local.data());
       sum += energy->evaluate(element, local.data(), nullptr, nullptr, Curvature::exact);
@@ -83,9 +83,9 @@ std::vector<Penetration> penetrations(const Model& model, const Vector& x) {
 
 std::vector<WorstElement> worst_elements(const Problem& problem, const Vector& x, int count) {
   std::vector<Outside> outside;
-  std::array<double, max_stencil_width> local;
   for (const Constraint* constraint : problem.constraints) {
     const Stencils& stencils = constraint->stencils();
+    Vector local(stencils.width());
     for (Index element = 0; element < stencils.count(); ++element) {
       stencils.gather(element, x, local.data());
       const double violation = constraint->violation(element, local.data());

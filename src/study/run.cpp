@@ -12,6 +12,7 @@
 #include "problems/build.h"
 #include "study/acceleration_record.h"
 #include "study/examine.h"
+#include "study/export_step.h"
 #include "study/frame_output.h"
 #include "study/load_step.h"
 #include "study/machine.h"
@@ -33,6 +34,8 @@ void check(const RunOptions& options) {
   if (options.resume && options.folder.empty()) throw std::invalid_argument("RunOptions: resume needs a folder");
   if (options.resume && !options.accelerations.empty())
     throw std::invalid_argument("RunOptions: accelerations are recorded from the beginning, not with resume");
+  if (options.resume && options.export_step > 0)
+    throw std::invalid_argument("RunOptions: a step is exported in a run from the beginning, not with resume");
 }
 
 Budget budget_of(const RunOptions& options) {
@@ -106,6 +109,8 @@ bool Run::begin() {
   threads_ = from ? from->threads : options_.threads > 0 ? options_.threads : machine.cores;
   model_ = build_model(scene_);
   stepper_ = std::make_unique<Stepper>(*model_, time_options(scene_));
+  if (options_.export_step > 0)
+    export_step(scene_, *model_, *stepper_);  // refuses what it cannot write, before any step
   if (!options_.solver) own_solver_ = build_solver(scene_, threads_);
   solver_ = options_.solver ? options_.solver : own_solver_.get();
 
@@ -162,6 +167,8 @@ void Run::loop() {
 /// False where the run ends here.
 bool Run::step() {
   const Problem& problem = stepper_->problem();
+  if (stepper_->state().step + 1 == options_.export_step)
+    export_step(scene_, *model_, *stepper_).write(options_.export_file);
   std::optional<History> history;
   if (folder_ && stepper_->state().step + 1 == options_.history_step) history.emplace(*solver_, problem);
   const Result result = solve_step(*stepper_, *solver_, scene_.solver.tolerance, scene_.time.halvings, budget_);

@@ -20,6 +20,8 @@ struct RunOptions {
   int threads = 0;                          ///< 0: those of the run that is resumed, or else the cores of the machine
   double max_seconds = 0;                   ///< wall clock of this call; 0: no limit
   int history_step = 0;                     ///< the step whose iterates are judged and written; 0: none
+  int export_step = 0;                      ///< the step that is written as a model to `export_file`; 0: none
+  std::filesystem::path export_file;        ///< .nl
   const std::atomic<bool>* stop = nullptr;  ///< raised to interrupt the run within one linear solve
   Solver* solver = nullptr;                 ///< borrowed; null: the one that the scene names
   std::string version;                      ///< of the calling program, for the summary

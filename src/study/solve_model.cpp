@@ -1,5 +1,7 @@
 #include "study/solve_model.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -97,6 +99,13 @@ ModelSolution solve_model(const NlModel& model, const Scene& settings, const Bud
       record.status = record.residuals.finite ? Status::stalled : Status::not_finite;
       record.message = summary.solver + " says solved, but the residuals are not within tolerance";
     }
+    // Rows that push against each other make a scale on which little is left to see.
+    const double off = record.residuals.stationarity_unscaled / posed.objective_force(result.x);
+    if (record.status == Status::solved && off > settings.solver.tolerance.stationarity)
+      summary.notes.push_back(
+          fmt::format("stationarity is {:.1e} of the largest force, that of a row, but {:.1e} of the objective's",
+                      record.residuals.stationarity, off));
+    solution.false_success = record.status != Status::solved && (result.status == Status::solved || result.overruled);
     record.counts = result.counts;
     record.seconds = result.timings;
     summary.steps_asked = 1;
@@ -122,12 +131,8 @@ void write_model_solution(const std::filesystem::path& folder, const NlModel& mo
   if (error) throw FileError(folder, "cannot be made: " + error.message());
   Json variables = Json::object(), rows = Json::object();
   for (int i = 0; i < model.variables(); ++i) variables[model.variable_name(i)] = solution.x[i];
-  for (int row = 0; row < model.rows(); ++row) {
-    Vector own(static_cast<Index>(model.variables_of(row).size()));
-    for (Index k = 0; k < own.size(); ++k) own[k] = solution.x[model.variables_of(row)[static_cast<std::size_t>(k)]];
-    rows[model.row_name(row)] = {{"value", model.evaluate(row, own.data(), nullptr, nullptr)},
-                                 {"multiplier", solution.dual[row]}};
-  }
+  for (int row = 0; row < model.rows(); ++row)
+    rows[model.row_name(row)] = {{"value", model.value_at(row, solution.x)}, {"multiplier", solution.dual[row]}};
   solution.summary.files = {"solution.json"};
   write_atomically(
       folder / "solution.json",

@@ -12,7 +12,8 @@ namespace taut {
 
 /// What came of a model. `x` and `dual` (NlProblem::dual) are there whatever the status.
 struct ModelSolution {
-  RunSummary summary;  ///< of one step
+  RunSummary summary;          ///< of one step
+  bool false_success = false;  ///< the solver, or the library behind it, says solved, the residuals do not
   Vector x, dual;
 };
 

@@ -31,6 +31,14 @@ TEST_F(ModelTest, SolveWritesSummaryAndSolution) {
   EXPECT_EQ(solution["rows"].size(), 1u);
 }
 
+TEST_F(ModelTest, ReportShowsResidualsAndWorstRows) {
+  const Outcome outcome = taut({"solve", model("infeasible_rows"), "--report", folder("report"), "--quiet"});
+  EXPECT_EQ(outcome.code, 3) << outcome.error;
+  const std::string page = content(path("report") / "index.html");
+  EXPECT_THAT(page, HasSubstr("Rows and bounds furthest outside"));
+  EXPECT_THAT(page, HasSubstr("Residuals, computed without the solver"));
+}
+
 TEST_F(ModelTest, SolveExitsWithThreeWhereThereIsNoPoint) {
   const Outcome outcome = taut({"solve", model("infeasible_rows")});
   EXPECT_EQ(outcome.code, 3);

@@ -3,10 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <sstream>
 
 #include "problems/nl_problem.h"
+#include "problems/nl_writer.h"
 #include "problems/scene.h"
 #include "support/derivative_check.h"
 #include "support/random_values.h"
@@ -132,6 +134,79 @@ TEST_F(NlModelTest, RefusesWhatItCannotServeInOneLine) {
     EXPECT_EQ(reason.find('\n'), std::string::npos);
   }
   EXPECT_THROW(NlModel(models / "not_there.nl"), InputError);
+}
+
+/// Appends numbers as a binary .nl file holds them: four bytes for an integer, eight for a double.
+template <class... Values>
+void append(std::string& bytes, Values... values) {
+  (bytes.append(reinterpret_cast<const char*>(&values), sizeof values), ...);
+}
+
+TEST_F(NlModelTest, BinaryFilesAreRead) {
+  // min (x0 - 3)^2 with x0 <= 2, the header as in text but for "b" and the kind of arithmetic (1: little-endian).
+  std::string bytes = "b3 1 1 0\n 1 0 1 0 0 0\n 0 1\n 0 0\n 0 1 0\n 0 0 1 1\n 0 0 0 0 0\n 0 1\n 0 0\n 0 0 0 0 0\n";
+  append(bytes, 'O', 0, 0);  // objective 0 is minimised
+  append(bytes, 'o', 5);     // a power
+  append(bytes, 'o', 1, 'v', 0, 'n', 3.0, 'n', 2.0);
+  append(bytes, 'x', 1, 0, 1.0);  // start
+  append(bytes, 'b', '1', 2.0);   // an upper bound
+  append(bytes, 'G', 0, 1, 0, 0.0);
+  const NlModel model(write(bytes));
+  EXPECT_EQ(model.start(), Vector::Ones(1));
+  EXPECT_EQ(model.upper(), Vector::Constant(1, 2));
+  const double x = 5;
+  double gradient, hessian;
+  EXPECT_EQ(model.evaluate(NlModel::objective, &x, &gradient, &hessian), 4);
+  EXPECT_EQ(gradient, 4);
+  EXPECT_EQ(hessian, 2);
+}
+
+TEST_F(NlModelTest, ARowWithoutVariablesOutsideItsBoundsIsRefusedByName) {
+  // min x0 with 1 <= 5 <= 2.
+  const std::string text =
+      "g3 1 1 0\n 1 1 1 1 0 0\n 0 0\n 0 0\n 0 0 0\n 0 0 0 1\n 0 0 0 0 0\n 0 1\n 0 0\n"
+      " 0 0 0 0 0\nC0\nn5\nO0 0\nn0\nr\n0 1 2\nb\n3\nk0\nG0 1\n0 1\n";
+  const NlModel model(write(text));
+  EXPECT_TRUE(model.variables_of(0).empty());
+  try {
+    const NlProblem posed(model);
+    FAIL() << "posed";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("without variables and outside its bounds"));
+  }
+}
+
+/// min sum of (1 - x_i)^2 + 100 (x_{i+1} - x_i^2)^2 with sum x_i <= count: functions of more variables than a stencil
+/// of a scene has.
+NlFile wide_model(int count) {
+  NlFile file;
+  file.start = Vector::Constant(count, 0.5);
+  file.lower = Vector::Constant(count, -10);
+  file.upper = Vector::Constant(count, 10);
+  std::vector<NlExpression> terms;
+  NlFile::Row sum_row{"sum", {}, -HUGE_VAL, static_cast<double>(count)};
+  for (int i = 0; i < count; ++i) {
+    const NlExpression x = NlExpression::variable(i);
+    terms.push_back(square(1 - x));
+    if (i + 1 < count) terms.push_back(100 * square(NlExpression::variable(i + 1) - square(x)));
+    sum_row.function.linear[i] = 1;
+    file.variable_names.push_back("x" + std::to_string(i));
+  }
+  file.objective.nonlinear = sum(terms);
+  file.rows.push_back(sum_row);
+  return file;
+}
+
+TEST_F(NlModelTest, WideFunctionsHaveTheRightDerivatives) {
+  wide_model(80).write(path("wide.nl"));
+  const NlModel model(path("wide.nl"));
+  ASSERT_EQ(model.variables_of(NlModel::objective).size(), 80u);
+  const NlProblem posed(model);
+  const Vector x = RandomValues(3).vector(80);
+  expect_derivatives(*posed.problem().energies[0], x, SemidefiniteForm::projection, "wide objective");
+  const Constraint& row = *posed.problem().constraints.back();
+  ASSERT_EQ(row.stencils().width(), 80);
+  expect_derivatives(Contraction(row, Vector::Constant(1, 1.5)), x, SemidefiniteForm::projection, "wide row");
 }
 
 TEST_F(NlModelTest, BoundsThatCrossAreRefusedByName) {

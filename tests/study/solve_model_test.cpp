@@ -85,29 +85,5 @@ TEST(SolveModel, StopsWhereItIsTold) {
   EXPECT_EQ(solve_model(model, read_model_settings(file), budget, "test").summary.status, Status::interrupted);
 }
 
-/// A folder of models, for which TAUT_NL_DIR stands: no false success, whatever is in it.
-TEST(NlFolder, NothingIsCalledSolvedThatIsNot) {
-  const char* folder = std::getenv("TAUT_NL_DIR");
-  if (!folder) GTEST_SKIP() << "TAUT_NL_DIR is not set";
-  int solved = 0, models = 0;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() != ".nl") continue;
-    try {
-      const NlModel model(entry.path());
-      const Scene settings = read_model_settings(entry.path());
-      const ModelSolution solution = solve_model(model, settings, {}, "test");
-      ++models;
-      if (solution.summary.status != Status::solved) continue;
-      ++solved;
-      EXPECT_LE(solution.summary.feasibility.unscaled, 1e-6) << entry.path();
-      EXPECT_LE(solution.summary.stationarity.scaled, 1e-6) << entry.path();
-    } catch (const InputError& error) {
-      std::cout << error.what() << "\n";
-    }
-  }
-  EXPECT_GT(models, 0);
-  EXPECT_GE(solved, 0.9 * models);
-}
-
 }  // namespace
 }  // namespace taut
