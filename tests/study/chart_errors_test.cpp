@@ -53,7 +53,8 @@ TEST_F(ChartErrors, ASheetIsWhereTheMiddleOfAThickShellIs) {
                                       {"bodies.cloth.membrane", "null"},
                                       {"bodies.cloth.bending", "null"},
                                       {"bodies.cloth.thickness", "0.01"},
-                                      {"bodies.cloth.material", R"({"young_modulus": 1e4, "poisson_ratio": 0.2})"}});
+                                      {"bodies.cloth.material",
+                                       R"({"law": "stvk", "young_modulus": 1e4, "poisson_ratio": 0.2})"}});
   const auto common = common_points({sheet, shell}, 1.4);
   ASSERT_THAT(common[0], SizeIs(25));
   for (std::size_t k = 0; k < 25; ++k) {
