@@ -183,10 +183,10 @@ Json entries_table(const ProblemComparison& problem) {
       {"rows", rows}};
 }
 
-/// What an entry has solved of a step.
+/// What an entry ended at in a step, where that is a place.
 std::optional<Vector> solution_of(const EntryRun& run, const fs::path& folder, int step) {
-  const bool has =
-      std::any_of(run.trials.begin(), run.trials.end(), [step](const StepTrial& t) { return t.step == step; });
+  const bool has = std::any_of(run.trials.begin(), run.trials.end(),
+                               [step](const StepTrial& trial) { return trial.step == step && trial.residuals.finite; });
   return has ? std::optional(read_positions(folder / run.folder, step)) : std::nullopt;
 }
 
@@ -200,6 +200,7 @@ Json viewer_of(const ProblemComparison& problem, const fs::path& folder) {
   const Scene scene = read_scene(problem.file, shown->overrides);
   std::vector<ViewerFrame> frames{{0, [&scene] { return frame_of(build_model(scene)->start()); }, problem.file}};
   for (const StepTrial& trial : shown->trials) {
+    if (!trial.residuals.finite) continue;  // no place to show
     frames.push_back(
         {trial.step,
          [&folder, shown, step = trial.step] { return frame_of(read_positions(folder / shown->folder, step)); },

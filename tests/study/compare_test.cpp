@@ -107,7 +107,7 @@ EntryRun entry_of(const std::string& group, double seconds, double distance, Sta
   run.steps_asked = 1;
   StepTrial& trial = run.trials.emplace_back();
   trial.seconds = {seconds};
-  trial.distance = Distance{.positions = distance};
+  trial.distance.emplace().positions = distance;
   trial.result.status = trial.judged = judged;
   return run;
 }
