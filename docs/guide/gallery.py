@@ -97,6 +97,8 @@ def slim(svg):
 
 
 def draw_scene(name):
+    if not shutil.which("rsvg-convert"):
+        sys.exit("gallery.py: drawing needs rsvg-convert, which is not installed (Debian's package librsvg2-bin)")
     pictures = sorted(run(f"taut solve {name} --out out/{name}").glob("pictures/*.svg"))
     for old in frames(name):
         old.unlink()
