@@ -64,7 +64,8 @@ std::string keys_of(const Document& object) {
   return text;
 }
 
-/// Sets one dotted key. Its parent has to be there; whether the key itself may be is for the schema to say.
+/// Sets one dotted key, or with null takes it out. Its parent has to be there; whether the key itself may be is for the
+/// schema to say.
 void apply(Document& document, const std::string& key, const std::string& value, const std::string& source) {
   Document* parent = &document;
   std::string pointer;
@@ -85,7 +86,11 @@ void apply(Document& document, const std::string& key, const std::string& value,
     throw InputError(source, pointer,
                      "found no object, so \"" + key.substr(begin) + "\" cannot be set in it; set \"" +
                          key.substr(0, begin - 1) + "\" as a whole");
-  (*parent)[key.substr(begin)] = value_of(value);
+  const Document set = value_of(value);
+  if (set.is_null())
+    parent->erase(key.substr(begin));
+  else
+    (*parent)[key.substr(begin)] = set;
 }
 
 std::string with_overrides(std::string source, const Overrides& overrides) {

@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "problems/schema.h"
+
 namespace taut {
 namespace {
 
@@ -11,6 +13,17 @@ using namespace scene;
 int number_of_prisms(const std::vector<Layer>& layers) {
   return std::accumulate(layers.begin(), layers.end(), 0,
                          [](int sum, const Layer& layer) { return sum + layer.prisms; });
+}
+
+/// A section "shell" that says nothing, completed as the reader of files has done with every other.
+const nlohmann::json& default_shell() {
+  static const nlohmann::json completed = [] {
+    const auto schema = nlohmann::ordered_json::parse(problem_schema());
+    nlohmann::ordered_json shell = nlohmann::ordered_json::object();
+    complete(shell, {{"$ref", "#/definitions/shell"}, {"definitions", schema["definitions"]}}, "");
+    return nlohmann::json(shell);
+  }();
+  return completed;
 }
 
 }  // namespace
@@ -24,6 +37,8 @@ void ShellReader::refuse_keys(const Json& body, const std::string& pointer, std:
 void ShellReader::check_cloth(const Json& body, const std::string& pointer) const {
   refuse_keys(body, pointer, {"top", "material", "layers", "vertex_thickness"},
               "none of it where \"model\" is \"cloth\"");
+  if (body["shell"] != default_shell())
+    refuse(pointer + "/shell", "\"shell\"", "none of it, or its defaults, where \"model\" is \"cloth\"");
   if (!body.contains("thickness")) missing(pointer + "/thickness", "a number > 0, in m");
   if (!body.contains("density")) missing(pointer + "/density", "a number > 0, in kg/m3");
 }
@@ -31,6 +46,8 @@ void ShellReader::check_cloth(const Json& body, const std::string& pointer) cons
 void ShellReader::check_solid(const Json& body, const std::string& pointer) const {
   refuse_keys(body, pointer, {"thickness", "vertex_thickness", "top", "layers", "membrane", "bending"},
               "none of it with a mesh of tetrahedra");
+  if (body["shell"] != default_shell())
+    refuse(pointer + "/shell", "\"shell\"", "none of it, or its defaults, with a mesh of tetrahedra");
   if (!body.contains("density")) missing(pointer + "/density", "a number > 0, in kg/m3");
   if (!body.contains("material")) missing(pointer + "/material", "an object");
   if (!body["material"].contains("young_modulus"))

@@ -38,8 +38,8 @@ The smallest problem, a square that hangs by a corner:
 }
 ```
 
-`--set KEY=VALUE` replaces one value, with a dotted key: `--set constraints.limit.max=1.05`. The value is JSON, or else taken as a string. The
-section that holds the key has to be in the file or have a default.
+`--set KEY=VALUE` replaces one value, with a dotted key: `--set constraints.limit.max=1.05`. The value is JSON, or else taken as a string;
+`null` takes the key out, as if the file did not have it. The section that holds the key has to be in the file or have a default.
 
 A run's identity is a hash of the completed problem and of the bytes of its mesh files; `output`, `name`, `description` and `look_for` are left
 out, and key order, comments and paths do not matter.

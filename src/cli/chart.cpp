@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -95,24 +94,16 @@ int exit_code(const ChartData& data) {
 }
 
 int draw_chart(const ChartArguments& arguments) {
-  if (arguments.resume && arguments.out.empty())
-    throw UsageError("--resume needs --out DIR, the directory of the chart to go on with");
+  const OutFolder folder(arguments.out, arguments.resume, "chart");
   arguments.report.check();
   ChartOptions options = options_of(arguments);
   options.stop = &stop_on_signals();
-  std::optional<TemporaryFolder> temporary;
-  if (arguments.out.empty()) temporary.emplace();
-  options.folder = temporary ? temporary->path() : fs::path(arguments.out);
-
-  std::unique_ptr<Progress> progress;
-  long done = 0;
-  if (!arguments.quiet) {
-    options.on_start = [&](int tasks) { progress = std::make_unique<Progress>("chart", tasks, stderr); };
-    options.on_task = [&](const ChartPoint& point) { progress->update(++done, progress_note(point)); };
-  }
+  options.folder = folder.path();
+  TaskProgress progress("chart", arguments.quiet);
+  options.on_start = [&](int tasks) { progress.begin(tasks); };
+  options.on_task = [&](const ChartPoint& point) { progress.done(progress_note(point)); };
   const ChartData data = chart(options);
-  if (progress && !data.interrupted) progress->finish();
-  progress.reset();
+  progress.end(data.interrupted);
 
   const nlohmann::json report = chart_report(data, typed_command());
   write_atomically(options.folder / "report.json",
@@ -135,7 +126,7 @@ constexpr const char* footer =
     "  mesh         the cells of every grid times these factors: mesh=0.5,1,2\n"
     "  integrator   time.integrator\n"
     "  penalty      the first penalty of augmented Lagrangians\n"
-    "  model        problems, or lists of overrides: model=thin.json,thick.json or model='KEY=V;KEY=V',...\n"
+    "  model        problems, or lists of overrides: model=thin.json,thick.json or model='NAME:KEY=V;KEY=V',...\n"
     "  KEY          any other key of the problem: constraints.limit.form=matrix,singular_values\n"
     "\n"
     "What is measured (--error), at the end of the run:\n"

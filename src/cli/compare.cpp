@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -104,18 +103,14 @@ int compare_on_suite(const CompareArguments& arguments) {
   const TemporaryFolder logs;
   options.logs = logs.path();
 
-  std::unique_ptr<Progress> progress;
-  long done = 0;
-  if (!arguments.quiet) {
-    options.on_start = [&](int processes) { progress = std::make_unique<Progress>("compare", processes, stderr); };
-    options.on_run = [&](const SuiteModel& model, const SuiteEntry& entry, const SuiteRun& run) {
-      progress->update(++done, fmt::format("{}, {}: {}", model.name, entry.chosen.label,
-                                           run.outcome == "finished" ? to_string(run.status) : run.outcome));
-    };
-  }
+  TaskProgress progress("compare", arguments.quiet);
+  options.on_start = [&](int processes) { progress.begin(processes); };
+  options.on_run = [&](const SuiteModel& model, const SuiteEntry& entry, const SuiteRun& run) {
+    progress.done(fmt::format("{}, {}: {}", model.name, entry.chosen.label,
+                              run.outcome == "finished" ? to_string(run.status) : run.outcome));
+  };
   const Suite suite = run_suite(options);
-  if (progress && !suite.interrupted) progress->finish();
-  progress.reset();
+  progress.end(suite.interrupted);
   if (!arguments.out.empty()) {
     std::error_code error;
     fs::create_directories(arguments.out, error);
@@ -137,23 +132,16 @@ int compare_solvers(const CompareArguments& arguments) {
   if (!arguments.suite.empty()) return compare_on_suite(arguments);
   if (arguments.problems.empty() || arguments.solvers.empty())
     throw UsageError("compare needs a PROBLEM and --solvers, or --suite DIR; see taut compare --help");
-  if (arguments.resume && arguments.out.empty())
-    throw UsageError("--resume needs --out DIR, the directory of the comparison to go on with");
+  const OutFolder folder(arguments.out, arguments.resume, "comparison");
   CompareOptions options = options_of(arguments);
   options.stop = &stop_on_signals();
-  std::optional<TemporaryFolder> temporary;
-  if (arguments.out.empty()) temporary.emplace();
-  options.folder = temporary ? temporary->path() : fs::path(arguments.out);
-
-  std::unique_ptr<Progress> progress;
-  long done = 0;
-  if (!arguments.quiet) {
-    options.on_start = [&](int processes) { progress = std::make_unique<Progress>("compare", processes, stderr); };
-    options.on_run = [&](const EntryRun& run) { progress->update(++done, progress_note(run)); };
-  }
+  options.folder = folder.path();
+  TaskProgress progress("compare", arguments.quiet);
+  options.on_start = [&](int processes) { progress.begin(processes); };
+  options.on_run = [&](const EntryRun& run) { progress.done(progress_note(run)); };
   const Comparison comparison = compare(options);
-  if (progress && !comparison.interrupted) progress->finish();
-  progress.reset();
+  progress.end(comparison.interrupted);
+
   write_atomically(options.folder / "compare.md", compare_markdown(comparison));
   write_atomically(options.folder / "compare.csv", compare_csv(comparison));
 
@@ -161,7 +149,8 @@ int compare_solvers(const CompareArguments& arguments) {
                            : arguments.quiet ? ""
                                              : compare_terminal(comparison, arguments.out);
   const bool printed = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
-  if (arguments.report.wanted()) arguments.report.write(compare_report(comparison, typed_command()), arguments.quiet);
+  if (arguments.report.wanted())
+    arguments.report.write(compare_report(comparison, typed_command(), options.folder), arguments.quiet);
   return printed ? exit_code(comparison) : exit_internal_error;
 }
 
@@ -180,7 +169,9 @@ std::string footer() {
          "Files in DIR: compare.json (everything), compare.md, compare.csv (a line per entry and step), and a "
          "directory\n"
          "per problem with the states and, per entry, its log, steps.jsonl and solutions.\n"
-         "--report DIR writes DIR/index.html: charts, a map of what became of each step, how to repeat each entry.\n"
+         "--report DIR writes DIR/index.html: the mesh in 3D, charts, a map of what became of each step, how to repeat "
+         "each\n"
+         "entry.\n"
          "\n"
          "Exit codes: 0 the comparison is complete, whatever its result; 1 internal error; 2 wrong usage or input;\n"
          "3 complete, but the reference did not solve every step; 130 interrupted, finished processes are kept.\n"

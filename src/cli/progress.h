@@ -3,8 +3,10 @@
 #include <chrono>
 #include <cstdio>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace taut {
 
@@ -46,6 +48,31 @@ class Progress {
   Time start_, printed_;
   bool terminal_, colour_, unicode_;
   bool drawn_ = false, finished_ = false;
+};
+
+/// The progress of tasks whose number is known only once they are planned; says nothing where `quiet`.
+class TaskProgress {
+ public:
+  TaskProgress(std::string label, bool quiet) : label_(std::move(label)), quiet_(quiet) {}
+
+  void begin(int tasks) {
+    if (!quiet_) progress_.emplace(label_, tasks);
+  }
+  /// One more is finished; `note` is one short line on it.
+  void done(std::string_view note) {
+    if (progress_) progress_->update(++done_, note);
+  }
+  /// Leaves a line with the count and the seconds, unless the command was interrupted.
+  void end(bool interrupted) {
+    if (progress_ && !interrupted) progress_->finish();
+    progress_.reset();
+  }
+
+ private:
+  std::string label_;
+  bool quiet_;
+  long done_ = 0;
+  std::optional<Progress> progress_;
 };
 
 }  // namespace taut

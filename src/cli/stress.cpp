@@ -57,17 +57,13 @@ int make_atlas(const StressArguments& arguments) {
   options.worker = {"/proc/self/exe", "compare-worker"};
   options.stop = &stop_on_signals();
   options.version = TAUT_VERSION;
-  std::unique_ptr<Progress> progress;
-  long done = 0;
-  if (!arguments.quiet) {
-    options.on_start = [&](int cells) { progress = std::make_unique<Progress>("stress", cells, stderr); };
-    options.on_cell = [&](const std::string& name, const StressCell& cell) {
-      progress->update(++done, fmt::format("{}: {}", name, to_string(cell.outcome)));
-    };
-  }
+  TaskProgress progress("stress", arguments.quiet);
+  options.on_start = [&](int cells) { progress.begin(cells); };
+  options.on_cell = [&](const std::string& name, const StressCell& cell) {
+    progress.done(fmt::format("{}: {}", name, to_string(cell.outcome)));
+  };
   const StressAtlas atlas = stress(options);
-  if (progress && !atlas.interrupted) progress->finish();
-  progress.reset();
+  progress.end(atlas.interrupted);
   if (atlas.interrupted) return exit_interrupted;
 
   const nlohmann::json report = stress_report(atlas, typed_command());

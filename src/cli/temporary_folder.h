@@ -2,8 +2,11 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
+
+#include "cli/commands.h"
 
 namespace taut {
 
@@ -24,6 +27,22 @@ class TemporaryFolder {
   const std::filesystem::path& path() const { return path_; }
 
  private:
+  std::filesystem::path path_;
+};
+
+/// The folder of --out, or, where none was given, one that is removed again.
+class OutFolder {
+ public:
+  /// Throws UsageError where an earlier `what` ("chart") cannot be gone on with, because its folder is not named.
+  OutFolder(const std::string& out, bool resume, const std::string& what) : path_(out) {
+    if (resume && out.empty())
+      throw UsageError("--resume needs --out DIR, the directory of the " + what + " to go on with");
+    if (out.empty()) path_ = temporary_.emplace().path();
+  }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::optional<TemporaryFolder> temporary_;
   std::filesystem::path path_;
 };
 

@@ -3,12 +3,10 @@
 #include <string>
 #include <vector>
 
+#include "report/text_table.h"
 #include "study/chart_records.h"
 
 namespace taut {
-
-/// A table: the first row has the names of the columns.
-using TextTable = std::vector<std::vector<std::string>>;
 
 /// A row per point of a problem.
 TextTable chart_points(const ProblemChart& problem);

@@ -5,17 +5,30 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "problems/build.h"
 #include "report/command_text.h"
+#include "report/viewer_data.h"
+#include "study/compare_entry.h"
 #include "study/solver_entries.h"
 
 namespace taut {
 namespace {
 
+namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr std::size_t most_columns = 40;  // of a heat map
+constexpr std::size_t most_others = 6;    // entries whose distance the viewer shows
+
+Frame frame_of(const Vector& positions) {
+  Frame frame;
+  frame.positions = positions;
+  return frame;
+}
 
 double largest_residual(const Residuals& r) {
   return r.finite ? std::max({r.stationarity, r.feasibility, r.complementarity}) : HUGE_VAL;
@@ -44,8 +57,10 @@ std::string command_of(const Comparison& comparison, const ProblemComparison& pr
   return command_text(words);
 }
 
-/// Cost and accuracy of the entries, a series for each solver.
-Json accuracy_chart(const Comparison& comparison, const ProblemComparison& problem) {
+/// A number of each entry against its time, a series for each solver.
+template <class Value>
+Json time_chart(const Comparison& comparison, const ProblemComparison& problem, const std::string& id,
+                const std::string& title, const std::string& y, Value value) {
   Json series = Json::array();
   for (const EntryRun& run : problem.entries) {
     if (run.trials.empty()) continue;
@@ -56,16 +71,30 @@ Json accuracy_chart(const Comparison& comparison, const ProblemComparison& probl
       same = std::prev(series.end());
     }
     (*same)["points"].push_back({{"x", summary.seconds.median},
-                                 {"y", summary.residual},
+                                 {"y", value(summary)},
                                  {"status", status_of(run, summary)},
                                  {"label", run.label},
                                  {"command", command_of(comparison, problem, run)}});
   }
-  return {{"id", "accuracy_" + problem.folder},
-          {"title", problem.name + ": accuracy against time"},
+  return {{"id", id + "_" + problem.folder},
+          {"title", problem.name + ": " + title},
           {"x", {{"label", "seconds a step"}, {"log", true}}},
-          {"y", {{"label", "largest residual of any step"}, {"log", true}}},
+          {"y", {{"label", y}, {"log", true}}},
           {"series", series}};
+}
+
+Json error_chart(const Comparison& comparison, const ProblemComparison& problem) {
+  Json chart =
+      time_chart(comparison, problem, "error", "error against time", "largest distance to the reference / size",
+                 [](const EntrySummary& s) { return s.distances > 0 ? Json(s.position_distance) : Json(); });
+  std::map<double, double> front;  // by seconds; one line can show one problem only
+  for (const EntryRun& run : problem.entries) {
+    if (run.group != problem.entries.front().group) return chart;
+    const EntrySummary s = summarize(run);
+    if (run.on_front) front[s.seconds.median] = s.position_distance;
+  }
+  chart["front"] = front;
+  return chart;
 }
 
 template <class Value>
@@ -142,19 +171,54 @@ Json entries_table(const ProblemComparison& problem) {
     const bool tried = !run.trials.empty(), distant = s.distances > 0;
     rows.push_back({run.label, s.solved, run.steps_asked, s.false_successes, status_of(run, s),
                     tried ? Json(s.residual) : Json(), distant ? Json(s.position_distance) : Json(),
-                    distant ? Json(s.objective_distance) : Json(), tried ? Json(s.seconds.median) : Json(),
-                    tried ? Json(s.linear_solves) : Json(), static_cast<double>(run.peak_memory_bytes) / 1e6});
+                    distant ? Json(s.objective_distance) : Json(), run.on_front ? "*" : "",
+                    tried ? Json(s.seconds.median) : Json(), tried ? Json(s.linear_solves) : Json(),
+                    static_cast<double>(run.peak_memory_bytes) / 1e6});
   }
   return {
       {"id", "entries_" + problem.folder},
       {"title", problem.name},
-      {"columns", {"solver", "solved", "of", "false", "status", "residual", "dx", "df", "s/step", "solves/step", "MB"}},
+      {"columns",
+       {"solver", "solved", "of", "false", "status", "residual", "dx", "df", "front", "s/step", "solves/step", "MB"}},
       {"rows", rows}};
+}
+
+/// What an entry ended at in a step, where that is a place.
+std::optional<Vector> solution_of(const EntryRun& run, const fs::path& folder, int step) {
+  const bool has = std::any_of(run.trials.begin(), run.trials.end(),
+                               [step](const StepTrial& trial) { return trial.step == step && trial.residuals.finite; });
+  return has ? std::optional(read_positions(folder / run.folder, step)) : std::nullopt;
+}
+
+/// The reference's solutions, or of entries on their own trajectories those of the first that has any.
+Json viewer_of(const ProblemComparison& problem, const fs::path& folder) {
+  const EntryRun* shown = &problem.trajectory;
+  for (const EntryRun& run : problem.entries) {
+    if (shown->trials.empty()) shown = &run;
+  }
+  if (shown->trials.empty()) return nullptr;
+  const Scene scene = read_scene(problem.file, shown->overrides);
+  std::vector<ViewerFrame> frames{{0, [&scene] { return frame_of(build_model(scene)->start()); }, problem.file}};
+  for (const StepTrial& trial : shown->trials) {
+    if (!trial.residuals.finite) continue;  // no place to show
+    frames.push_back(
+        {trial.step,
+         [&folder, shown, step = trial.step] { return frame_of(read_positions(folder / shown->folder, step)); },
+         (folder / shown->folder).string()});
+  }
+  std::vector<OtherPositions> others;
+  for (const EntryRun& run : problem.entries) {
+    if (&run == shown || run.group != shown->group || others.size() == most_others) continue;
+    others.push_back({run.label, [&](int step) { return solution_of(run, folder, step); }});
+  }
+  Json data = viewer_data(scene, frames, others);
+  data["note"] = fmt::format("{} as {} solved it. {}", problem.name, shown->label, data["note"].get<std::string>());
+  return data;
 }
 
 }  // namespace
 
-Json compare_report(const Comparison& comparison, const std::string& command) {
+Json compare_report(const Comparison& comparison, const std::string& command, const fs::path& folder) {
   Json report{{"title", "Comparison of solvers"}, {"command", command},      {"version", comparison.version},
               {"summary", Json::array()},         {"charts", Json::array()}, {"heat_maps", Json::array()},
               {"tables", Json::array()}};
@@ -171,7 +235,10 @@ Json compare_report(const Comparison& comparison, const std::string& command) {
                       run.trials.empty() ? ", " + run.outcome : fmt::format(", {:.3g} s a step", s.seconds.median)));
       for (const auto& [key, value] : run.overrides) report["settings"][problem.name][run.label][key] = value;
     }
-    report["charts"].push_back(accuracy_chart(comparison, problem));
+    report["charts"].push_back(error_chart(comparison, problem));
+    report["charts"].push_back(time_chart(comparison, problem, "accuracy", "residual against time",
+                                          "largest residual of any step",
+                                          [](const EntrySummary& summary) { return summary.residual; }));
     report["charts"].push_back(step_chart(problem, "step_seconds", "time of each step", "seconds",
                                           [](const StepTrial& trial) { return spread_of(trial.seconds).median; }));
     report["charts"].push_back(step_chart(problem, "step_residuals", "residual of each step", "largest residual",
@@ -181,7 +248,9 @@ Json compare_report(const Comparison& comparison, const std::string& command) {
   }
   report["summary"].push_back(
       "Residuals are computed from each problem and result without the solver. dx and df: largest distance to the "
-      "tightest-converged solution of the step, in positions relative to the scene and in the objective.");
+      "tightest-converged solution of the step, in positions relative to the scene and in the objective. The Pareto "
+      "front is that of seconds a step and dx.");
+  if (Json viewer = viewer_of(comparison.problems.front(), folder); !viewer.is_null()) report["viewer"] = viewer;
   return report;
 }
 

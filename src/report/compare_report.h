@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
@@ -7,9 +8,12 @@
 
 namespace taut {
 
-/// The report (html_report.h) of a comparison: for each problem accuracy against time, time and residual step by step,
-/// a heat map of what became of each step, and the table of compare.md. `command` is what made the comparison; every
-/// entry has one that repeats it alone.
-nlohmann::json compare_report(const Comparison& comparison, const std::string& command);
+/// The report (html_report.h) of a comparison: for each problem error against time with the Pareto front, residual
+/// against time, time and residual step by step, a heat map of what became of each step, and the table of compare.md;
+/// and a viewer of the first problem as the reference solved it, coloured also by how far other entries end from it.
+/// `command` is what made the comparison; every entry has one that repeats it alone. `folder` holds what compare() has
+/// written. Throws FileError where solutions in it are damaged.
+nlohmann::json compare_report(const Comparison& comparison, const std::string& command,
+                              const std::filesystem::path& folder);
 
 }  // namespace taut

@@ -12,5 +12,7 @@ using TextTable = std::vector<std::vector<std::string>>;
 std::string aligned(const TextTable& table);
 /// A table of Markdown.
 std::string markdown(const TextTable& table);
+/// A text as a cell of a CSV file, in quotes.
+std::string quoted(const std::string& text);
 
 }  // namespace taut

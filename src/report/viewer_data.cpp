@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -35,25 +36,38 @@ void subtract_frames(std::vector<std::uint16_t>& values, std::size_t count) {
     values[i] = static_cast<std::uint16_t>(values[i] - values[i - count]);
 }
 
-std::vector<FrameFile> frames_of(const fs::path& folder, const Scene& scene) {
-  std::vector<FrameFile> files;
+std::vector<ViewerFrame> frames_of(const fs::path& folder, const Scene& scene) {
+  std::vector<ViewerFrame> frames;
   std::error_code missing;
   for (const auto& entry : fs::directory_iterator(folder / "frames", missing)) {
     const fs::path& file = entry.path();
     const bool ours = file.filename().string().starts_with(file_name(scene.name) + "_") &&
                       (file.extension() == ".vtu" || file.extension() == ".obj");
-    if (const auto number = frame_number(file); ours && number) files.push_back({file, *number});
+    if (const auto number = frame_number(file); ours && number)
+      frames.push_back({*number, [file] { return read_frame(file); }, file.string()});
   }
-  std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
-  return files;
+  std::sort(frames.begin(), frames.end(), [](const auto& a, const auto& b) { return a.step < b.step; });
+  return frames;
 }
 
-/// At most `count` of the files, evenly, the first and the last among them.
-std::vector<FrameFile> spread(const std::vector<FrameFile>& files, std::size_t count) {
-  if (files.size() <= count) return files;
-  std::vector<FrameFile> chosen;
-  for (std::size_t i = 0; i < count; ++i) chosen.push_back(files[i * (files.size() - 1) / (count - 1)]);
+/// At most `count` of the frames, evenly, the first and the last among them.
+std::vector<ViewerFrame> spread(const std::vector<ViewerFrame>& frames, std::size_t count) {
+  if (frames.size() <= count) return frames;
+  std::vector<ViewerFrame> chosen;
+  for (std::size_t i = 0; i < count; ++i) chosen.push_back(frames[i * (frames.size() - 1) / (count - 1)]);
   return chosen;
+}
+
+/// How far each triangle's vertices are from other positions, the largest; NaN where there are none.
+std::vector<double> distances(const Model& model, const Vector& positions, const std::optional<Vector>& other) {
+  std::vector<double> values(model.triangles.size(), std::numeric_limits<double>::quiet_NaN());
+  if (!other || other->size() != positions.size()) return values;
+  for (std::size_t t = 0; t < values.size(); ++t) {
+    values[t] = 0;
+    for (const int vertex : model.triangles[t])
+      values[t] = std::max(values[t], (positions.segment<3>(3 * vertex) - other->segment<3>(3 * vertex)).norm());
+  }
+  return values;
 }
 
 /// The last picture of the run, packed.
@@ -179,28 +193,41 @@ std::string note_on(std::size_t shown, std::size_t all, const Model& model) {
 }  // namespace
 
 Json viewer_data(const fs::path& folder, const Scene& scene, const ViewerLimits& limits) {
-  const std::vector<FrameFile> all = frames_of(folder, scene);
-  if (all.empty()) return nullptr;
+  const std::vector<ViewerFrame> frames = frames_of(folder, scene);
+  if (frames.empty()) return nullptr;
+  Json data = viewer_data(scene, frames, {}, limits);
+  data["picture"] = picture_of(folder);
+  return data;
+}
+
+Json viewer_data(const Scene& scene, const std::vector<ViewerFrame>& all, const std::vector<OtherPositions>& others,
+                 const ViewerLimits& limits) {
   const auto model = build_model(scene);
   const Index vertices = model->start().size() / 3;
   const long long most =
       std::max(2LL, std::min<long long>(limits.frames, limits.vertices / std::max<Index>(1, vertices)));
-  const std::vector<FrameFile> chosen = spread(all, static_cast<std::size_t>(most));
+  const std::vector<ViewerFrame> chosen = spread(all, static_cast<std::size_t>(most));
 
   TriangleFields fields(*model);
+  std::vector<TriangleField> apart;
+  for (const OtherPositions& other : others)
+    apart.push_back({"distance_" + other.name, "distance to " + other.name, "m", 0.0, {}, {}});
   SphereTracks spheres(*model);
   std::vector<Vector> positions;
-  Json data{{"vertices", vertices}, {"frames", Json::array()}};
-  for (const auto& [file, step] : chosen) {
-    const Frame frame = read_frame(file);
+  Json data{{"vertices", vertices}, {"frames", Json::array()}, {"picture", nullptr}};
+  for (const ViewerFrame& one : chosen) {
+    const Frame frame = one.read();
     if (frame.positions.size() != 3 * vertices || !frame.positions.allFinite())
-      throw FileError(file, fmt::format("does not hold the {} vertices of the scene as finite numbers", vertices));
-    const double time = time_of(scene, step);
+      throw FileError(one.source,
+                      fmt::format("does not hold the {} vertices of the scene as finite numbers", vertices));
+    const double time = time_of(scene, one.step);
     for (const auto& mover : model->movers) mover(time);
     fields.take(frame);
+    for (std::size_t k = 0; k < others.size(); ++k)
+      apart[k].frames.push_back(distances(*model, frame.positions, others[k].at(one.step)));
     spheres.take();
     positions.push_back(frame.positions);
-    data["frames"].push_back({{"step", step}, {"time", time}});
+    data["frames"].push_back({{"step", one.step}, {"time", time}});
   }
   add_positions(positions, data);
   std::vector<std::uint32_t> corners;
@@ -208,6 +235,9 @@ Json viewer_data(const fs::path& folder, const Scene& scene, const ViewerLimits&
   data["triangles"] = packed(corners);
   data["fields"] = Json::array();
   for (const TriangleField& field : fields.fields()) data["fields"].push_back(field_json(field));
+  for (const TriangleField& field : apart) {
+    if (field.extremes().second > 0) data["fields"].push_back(field_json(field));
+  }
   data["worst"] = Json::array();
   for (const WorstPlace& worst : fields.worst()) {
     data["worst"].push_back({{"field", worst.field},
@@ -222,7 +252,6 @@ Json viewer_data(const fs::path& folder, const Scene& scene, const ViewerLimits&
   data["pins"] = pins_of(*model);
   data["spheres"] = spheres.json();
   data["time_unit"] = scene.time.integrator == scene::Integrator::quasi_static ? "of the load" : "s";
-  data["picture"] = picture_of(folder);
   data["note"] = note_on(chosen.size(), all.size(), *model);
   add_view(scene, data);
   return data;

@@ -1,8 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
 
+#include "files/vtu.h"
 #include "problems/scene.h"
 
 namespace taut {
@@ -26,5 +31,23 @@ struct ViewerLimits {
 /// Throws FileError or MeshError for a frame that is damaged or not of this scene, InputError for a scene that cannot
 /// be built.
 nlohmann::json viewer_data(const std::filesystem::path& folder, const Scene& scene, const ViewerLimits& limits = {});
+
+/// A frame of a scene that is read where it is shown.
+struct ViewerFrame {
+  int step = 0;
+  std::function<Frame()> read;
+  std::string source;  ///< for errors: the file
+};
+
+/// Other positions of the same scene's vertices after a step, m, 3 entries each; nothing where there are none.
+struct OtherPositions {
+  std::string name;
+  std::function<std::optional<Vector>(int step)> at;
+};
+
+/// The same of any frames, in the order of their steps and without a picture. Each of `others` that differs somewhere
+/// is one more field: how far the vertices of a triangle are from where they are there, m, the largest distance.
+nlohmann::json viewer_data(const Scene& scene, const std::vector<ViewerFrame>& frames,
+                           const std::vector<OtherPositions>& others = {}, const ViewerLimits& limits = {});
 
 }  // namespace taut

@@ -54,7 +54,7 @@ void check_solvers(const ChartChoice& choice) {
     if (choice.knob.kind == KnobKind::penalty && (solver == "ipopt" || solver == "nlopt"))
       throw InputError("--vary penalty: " + solver + " has no penalty, allowed: augmented Lagrangians");
   }
-  if (!choice.reference.empty()) solver_entry(choice.reference);
+  if (!choice.reference.empty()) solver_entry(choice.reference, "--reference");
 }
 
 class ChartMaker {
@@ -172,7 +172,7 @@ void ChartMaker::carry_out(const ChartJob& job, ChartPoint& point) {
 std::optional<Vector> ChartMaker::observed(const ChartPlan& plan, const PlannedRun& run, const ChartPoint& point) const
     try {
   if (point.outcome != "finished") return {};
-  return observe(read_stored_run(run_folder(process_, point)), plan.measure, run.vertices);
+  return observe(read_stored_run(run_folder(process_, point)), plan.measure, run.points);
 } catch (const std::exception&) {
   return {};  // the run is damaged, which its point says
 }

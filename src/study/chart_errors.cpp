@@ -24,11 +24,18 @@ Place place_of(const std::string& body, const Vector3& x, double size) {
   return place;
 }
 
-std::map<Place, int> places_of(const StartingPoints& scene, double size) {
-  std::map<Place, int> places;
+std::map<Place, BodyPoint> places_of(const StartingPoints& scene, double size) {
+  std::map<Place, BodyPoint> places;
+  const auto at = [&scene](int vertex) { return scene.positions.segment<3>(3 * vertex); };
+  const auto add = [&](const BodyRange& body, int a, int b) {
+    places.emplace(place_of(body.name, (at(a) + at(b)) / 2, size), BodyPoint{a, b});
+  };
   for (const BodyRange& body : scene.bodies) {
-    for (int vertex = body.first_vertex; vertex < body.first_vertex + body.vertices; ++vertex)
-      places.emplace(place_of(body.name, scene.positions.segment<3>(3 * vertex), size), vertex);
+    for (int vertex = 0; vertex < body.vertices; ++vertex)
+      add(body, body.first_vertex + vertex, body.first_vertex + vertex);
+    if (body.levels == 1) continue;
+    for (int bottom = 0; bottom < body.vertices; bottom += body.levels)
+      add(body, body.first_vertex + bottom, body.first_vertex + bottom + body.levels - 1);
   }
   return places;
 }
@@ -53,11 +60,11 @@ Vector end_positions(const StoredRun& run) {
 
 }  // namespace
 
-std::vector<std::vector<int>> common_vertices(const std::vector<StartingPoints>& scenes, double size) {
-  std::vector<std::map<Place, int>> places;
+std::vector<std::vector<BodyPoint>> common_points(const std::vector<StartingPoints>& scenes, double size) {
+  std::vector<std::map<Place, BodyPoint>> places;
   places.reserve(scenes.size());
   for (const StartingPoints& scene : scenes) places.push_back(places_of(scene, size));
-  std::vector<std::vector<int>> common(scenes.size());
+  std::vector<std::vector<BodyPoint>> common(scenes.size());
   if (scenes.empty()) return common;
   for (const auto& [place, unused] : places.front()) {
     const bool everywhere =
@@ -116,14 +123,14 @@ ErrorMeasure error_measure(ErrorKind kind, const Scene& scene, double size) {
   return measure;
 }
 
-std::optional<Vector> observe(const StoredRun& run, const ErrorMeasure& measure, const std::vector<int>& vertices) {
+std::optional<Vector> observe(const StoredRun& run, const ErrorMeasure& measure, const std::vector<BodyPoint>& points) {
   if (run.checkpoint.state.step != run.scene.time.steps) return {};
   std::vector<double> values;
   switch (measure.kind) {
     case ErrorKind::position: {
       const Vector x = end_positions(run);
-      for (const int vertex : vertices)
-        for (int axis = 0; axis < 3; ++axis) values.push_back(x[3 * vertex + axis]);
+      for (const auto& [a, b] : points)
+        for (int axis = 0; axis < 3; ++axis) values.push_back((x[3 * a + axis] + x[3 * b + axis]) / 2);
       break;
     }
     case ErrorKind::energy: {

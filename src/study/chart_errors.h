@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,9 +19,13 @@ struct StartingPoints {
   Vector positions;  ///< m, 3 entries each
 };
 
-/// For each scene its vertices that all scenes have: in bodies of one name, at the same place at the start within 1e-6
-/// of `size` (m), in an order that is the same for all. Empty lists where there are none.
-std::vector<std::vector<int>> common_vertices(const std::vector<StartingPoints>& scenes, double size);
+/// A place of a body: a vertex (twice), or the middle between one on the bottom of a thick shell and that on its top,
+/// which is where a sheet in its place would be.
+using BodyPoint = std::array<int, 2>;
+
+/// For each scene its points that all scenes have: in bodies of one name, at the same place at the start within 1e-6 of
+/// `size` (m), in an order that is the same for all. Empty lists where there are none.
+std::vector<std::vector<BodyPoint>> common_points(const std::vector<StartingPoints>& scenes, double size);
 
 /// What the ends of runs are compared by.
 struct ErrorMeasure {
@@ -39,8 +44,8 @@ struct ErrorMeasure {
 /// count. Throws InputError for probes where the scene has none.
 ErrorMeasure error_measure(ErrorKind kind, const Scene& scene, double size);
 
-/// What `measure` compares of a run's end; nothing where the run did not reach it. `vertices` are those of
-/// common_vertices(). Throws InputError for a scene that cannot be built.
-std::optional<Vector> observe(const StoredRun& run, const ErrorMeasure& measure, const std::vector<int>& vertices);
+/// What `measure` compares of a run's end; nothing where the run did not reach it. `points` are those of
+/// common_points(). Throws InputError for a scene that cannot be built.
+std::optional<Vector> observe(const StoredRun& run, const ErrorMeasure& measure, const std::vector<BodyPoint>& points);
 
 }  // namespace taut

@@ -74,16 +74,23 @@ KnobValue tolerance_value(double tolerance) {
   return value;
 }
 
-/// A file, or KEY=VALUE;KEY=VALUE.
-KnobValue model_value(const std::string& text) {
-  KnobValue value{.label = text, .problem = text.find('=') == text.npos ? text : "", .overrides = {}};
-  if (!value.problem.empty()) return value;
+/// A file, or KEY=VALUE;KEY=VALUE; a name and a colon may stand before either.
+KnobValue model_value(const std::string& given) {
+  const std::size_t colon = given.find(':');
+  const bool named = colon != given.npos && colon > 0 && colon < given.find('=');
+  const std::string text = named ? given.substr(colon + 1) : given;
+  KnobValue value{.label = named ? given.substr(0, colon) : text, .problem = "", .overrides = {}};
+  if (text.find('=') == text.npos) {
+    value.problem = text;
+    return value;
+  }
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(';', begin), text.size());
     const std::string setting = text.substr(begin, end - begin);
     const std::size_t equals = setting.find('=');
     if (equals == setting.npos || equals == 0)
-      throw InputError("--vary model: found " + setting + ", allowed: a problem, or KEY=VALUE;KEY=VALUE");
+      throw InputError("--vary model: found " + setting +
+                       ", allowed: a problem, or KEY=VALUE;KEY=VALUE, either with NAME: before it");
     value.overrides.emplace_back(setting.substr(0, equals), setting.substr(equals + 1));
     begin = end + 1;
   }

@@ -208,11 +208,11 @@ class Planner {
   }
 
   void share_vertices() {
-    const auto common = common_vertices(starts_, plan_.measure.size);
+    const auto common = common_points(starts_, plan_.measure.size);
     if (common.empty() || common.front().empty())
       throw InputError("--error position: the meshes of " + plan_.scene.name +
                        " have no vertex in common; allowed: meshes that are refined from each other, or --error probe");
-    for (const auto& [run, start] : starting_) run->vertices = common[start];
+    for (const auto& [run, start] : starting_) run->points = common[start];
   }
 
   const ChartChoice& choice_;

@@ -27,8 +27,8 @@ struct ChartChoice {
 
 struct PlannedRun {
   ChartJob job;
-  std::string value;          ///< KnobValue::label, or that of a rung
-  std::vector<int> vertices;  ///< what position errors compare
+  std::string value;              ///< KnobValue::label, or that of a rung
+  std::vector<BodyPoint> points;  ///< what position errors compare
 };
 
 /// The solutions of a reference, of which the finest has to be found and the others tell its error.

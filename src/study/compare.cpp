@@ -145,6 +145,7 @@ void Compare::compare_problem(const ProblemPlan& plan, ProblemComparison& proble
                       const EntryRun& run = problem.entries[entry];
                       return read_positions(folder_.path() / run.folder, run.trials[trial].step);
                     });
+  mark_front(problem.entries);
 }
 
 Comparison Compare::go() {

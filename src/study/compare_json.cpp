@@ -128,6 +128,7 @@ Json entry_json(const EntryRun& run) {
             {"outcome", run.outcome},
             {"message", run.message},
             {"summary", summary_json(run)},
+            {"on_front", run.on_front},
             {"seconds", run.seconds},
             {"peak_memory_bytes", run.peak_memory_bytes},
             {"resumed", run.resumed},

@@ -46,7 +46,7 @@ void check(const EntryChoice& choice) {
     if (std::count(begin, choice.solvers.end(), choice.solvers[k]) > 1)
       throw InputError("--solvers: found " + choice.solvers[k] + " twice, allowed: each once");
   }
-  if (!choice.reference.empty()) solver_entry(choice.reference);
+  if (!choice.reference.empty()) solver_entry(choice.reference, "--reference");
 }
 
 ChosenEntry choose(const EntryChoice& choice, const std::string& solver, const Overrides& varied,

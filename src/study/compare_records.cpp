@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <stdexcept>
+
+#include "study/pareto.h"
 
 namespace taut {
 namespace {
@@ -101,6 +104,23 @@ void measure_distances(std::vector<EntryRun>& entries, const Tolerances& toleran
     }
   }
   for (const auto& [key, places] : steps) measure_step(entries, places, tolerance, size, positions);
+}
+
+void mark_front(std::vector<EntryRun>& entries) {
+  std::map<std::string, std::vector<EntryRun*>> groups;
+  for (EntryRun& run : entries) {
+    run.on_front = false;
+    groups[run.group].push_back(&run);
+  }
+  for (const auto& [group, members] : groups) {
+    std::vector<WorkPrecision> work;
+    for (const EntryRun* run : members) {
+      const EntrySummary s = summarize(*run);
+      const bool counts = s.solved == run->steps_asked && s.false_successes == 0 && s.distances > 0;
+      work.push_back({s.seconds.median, counts ? s.position_distance : std::numeric_limits<double>::quiet_NaN()});
+    }
+    for (const std::size_t k : pareto_front(work)) members[k]->on_front = true;
+  }
 }
 
 }  // namespace taut

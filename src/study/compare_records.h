@@ -26,8 +26,9 @@ struct EntryRun {
   std::string message;  ///< why it is not finished
   double seconds = 0;   ///< wall clock of the process
   std::int64_t peak_memory_bytes = 0;
-  bool resumed = false;  ///< taken over from an earlier comparison
-  std::string folder;    ///< relative to that of the comparison
+  bool resumed = false;   ///< taken over from an earlier comparison
+  std::string folder;     ///< relative to that of the comparison
+  bool on_front = false;  ///< see mark_front()
   std::vector<StepTrial> trials;
 };
 
@@ -78,5 +79,9 @@ using PositionsOf = std::function<Vector(std::size_t entry, std::size_t trial)>;
 /// without such a solution get no distance. `size` is that of the scene, m.
 void measure_distances(std::vector<EntryRun>& entries, const Tolerances& tolerance, double size,
                        const PositionsOf& positions);
+
+/// Sets EntryRun::on_front: of the entries of a group that solved every step, those that no other beats in seconds a
+/// step without being farther from the reference solutions, or the reverse. Needs the distances.
+void mark_front(std::vector<EntryRun>& entries);
 
 }  // namespace taut

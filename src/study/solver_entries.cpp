@@ -40,13 +40,13 @@ const std::vector<SolverEntry>& solver_entries() {
   return entries;
 }
 
-const SolverEntry& solver_entry(const std::string& label) {
+const SolverEntry& solver_entry(const std::string& label, const std::string& option) {
   std::string allowed;
   for (const SolverEntry& entry : solver_entries()) {
     if (entry.label == label) return entry;
     allowed += (allowed.empty() ? "" : ", ") + entry.label;
   }
-  throw InputError("--solvers: found " + label + ", allowed: " + allowed);
+  throw InputError(option + ": found " + label + ", allowed: " + allowed);
 }
 
 }  // namespace taut

@@ -16,7 +16,7 @@ struct SolverEntry {
 /// Every label there is.
 const std::vector<SolverEntry>& solver_entries();
 
-/// The entry of that label. Throws InputError with the labels that are allowed.
-const SolverEntry& solver_entry(const std::string& label);
+/// The entry of that label. Throws InputError with the `option` that names it and the labels that are allowed.
+const SolverEntry& solver_entry(const std::string& label, const std::string& option = "--solvers");
 
 }  // namespace taut

@@ -46,7 +46,7 @@ void check_choice(const StressOptions& options, const std::vector<StressEntry>& 
   require(options.threads >= 1, "threads must be at least 1");
   require(options.max_seconds > 0, "max_seconds must be positive");
   require(!options.worker.empty(), "expected a worker's command, got none");
-  for (const std::string& method : options.methods) solver_entry(method);
+  for (const std::string& method : options.methods) solver_entry(method, "--method");
   std::string names;
   for (const StressEntry& entry : entries) names += (names.empty() ? "" : ", ") + entry.name;
   for (const std::string& wanted : options.entries) {

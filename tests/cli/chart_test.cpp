@@ -192,6 +192,37 @@ TEST_F(ChartCommand, AnInterruptedChartKeepsFinishedRuns) {
   EXPECT_THAT(log(), HasSubstr("--resume goes on"));
 }
 
+TEST_F(ChartCommand, ModelsOfARulerAreMeasuredAgainstTheFullShell) {
+  ASSERT_EQ(chart({"modal_cantilever", "--set", "bodies.ruler.mesh.grid.cells=[8,1]", "--set", "time.steps=20",
+                   "--solvers", "augmented_lagrangian", "--history", "0", "--error", "position", "--vary",
+                   "model=one:bodies.ruler.modal.modes=1,ten:bodies.ruler.modal.modes=10,"
+                   "shell:bodies.ruler.model=thick_shell;bodies.ruler.modal=null;"
+                   R"(constraints.clamp={"type":"pin","body":"ruler","select":{"edges":["x0"]}})",
+                   "--out", out()}),
+            0)
+      << log();
+  EXPECT_THAT(problem()["references"][0]["text"].get<std::string>(), HasSubstr("the last model by null_space"));
+  ASSERT_EQ(points().size(), 3u);
+  for (const Json& point : points()) EXPECT_EQ(point["status"], "solved");
+  EXPECT_EQ(points()[0]["value"], "one");
+  const double one = points()[0]["error"], ten = points()[1]["error"], shell = points()[2]["error"];
+  EXPECT_LT(ten, one) << "more modes are nearer to the shell";
+  EXPECT_LT(shell, ten / 1000) << "the shell differs from a tighter solution of itself by its tolerance only";
+}
+
+TEST_F(ChartCommand, ModelsOfAQuiltAreMeasuredAtTheVerticesOfItsShell) {
+  ASSERT_EQ(chart({"quilt", "--set", "bodies.quilt.mesh.grid.cells=[4,4]", "--set", "time.steps=3", "--solvers",
+                   "augmented_lagrangian", "--reference", "augmented_lagrangian", "--history", "0", "--vary",
+                   "model=shell:bodies.quilt.cover=null;bodies.quilt.model=thick_shell;constraints.limit=null,"
+                   "wrinkled:bodies.quilt.cover.mesh.refine=1",
+                   "--out", out()}),
+            0)
+      << log();
+  const double shell = points()[0]["error"], wrinkled = points()[1]["error"];
+  EXPECT_GT(shell, 1e-5) << "a cover makes a difference";
+  EXPECT_LT(wrinkled, shell / 1000);
+}
+
 TEST_F(ChartCommand, WrongUsageExitsWithTwo) {
   EXPECT_EQ(chart({}), 2);
   EXPECT_EQ(chart({"hanging_cloth", "--solvers", "magic"}), 2);

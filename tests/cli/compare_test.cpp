@@ -32,7 +32,9 @@ TEST_F(CompareCommand, ComparesAndResumes) {
                                       out()};
   ASSERT_EQ(compare(both), 0) << log();
   EXPECT_THAT(log(), HasSubstr("multiplier_loop"));
+  EXPECT_THAT(log(), HasSubstr("Pareto front of s/step against dx: "));
   ASSERT_EQ(entries().size(), 2u);
+  EXPECT_TRUE(entries()[0]["on_front"] || entries()[1]["on_front"]);
   for (const Json& entry : entries()) {
     EXPECT_EQ(entry["summary"]["solved"], 3);
     EXPECT_EQ(entry["summary"]["false_successes"], 0);

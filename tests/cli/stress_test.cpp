@@ -54,6 +54,7 @@ TEST_F(StressCommand, AFrontierThatMovedBackExitsWithThree) {
 }
 
 TEST_F(StressCommand, WrongUsageExitsWithTwo) {
+  expect_refused({"stress", "--method", "magic", "--quiet"}, "--method: found magic");
   expect_refused({"stress", "--method", "magic", "--quiet"}, "multiplier_loop");
   expect_refused({"stress", "--entry", "magic", "--quiet"}, "snap_through");
   expect_refused({"stress", "--max-seconds", "0"}, "--max-seconds");

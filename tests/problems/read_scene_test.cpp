@@ -217,6 +217,13 @@ TEST_F(ReadScene, FilesAreFoundBesideTheProblemOrNamed) {
   EXPECT_EQ(error(folder_), "no such file");
 }
 
+TEST_F(ReadScene, TheElementsOfThickShellsAreRefusedOfCloth) {
+  const std::string grid = R"("mesh": {"grid": {"size": [1, 2], "cells": [3, 4]}})";
+  EXPECT_EQ(error(problem("", grid + R"(, "shell": {"element": "plain"})")),
+            "/bodies/cloth/shell: found \"shell\", allowed: none of it, or its defaults, where \"model\" is \"cloth\"");
+  EXPECT_EQ(read_scene(problem("", grid + R"(, "shell": {})")).bodies.size(), 1u);
+}
+
 TEST_F(ReadScene, OverridesAreJsonOrPlainWords) {
   const fs::path file = problem(R"("constraints": {"limit": {"type": "strain_limit", "body": "cloth", "max": 1.1}})");
   const Scene scene = read_scene(file, {{"constraints.limit.max", "1.05"},
@@ -227,6 +234,13 @@ TEST_F(ReadScene, OverridesAreJsonOrPlainWords) {
   EXPECT_EQ(std::get<StrainLimit>(scene.constraints[0].kind).form, LimitForm::singular_values);
   EXPECT_EQ(scene.solver.tolerance.feasibility, 1e-9);
   EXPECT_EQ(std::get<Grid>(scene.bodies[0].mesh).cells_y, 9);
+}
+
+TEST_F(ReadScene, AnOverrideOfNullTakesAKeyOut) {
+  const fs::path file = problem(R"("constraints": {"limit": {"type": "strain_limit", "body": "cloth", "max": 1.1}})");
+  EXPECT_TRUE(read_scene(file, {{"constraints.limit", "null"}}).constraints.empty());
+  EXPECT_EQ(read_scene(file, {{"gravity", "null"}}).hash, read_scene(file).hash) << "its default takes its place";
+  EXPECT_THROW(read_scene(file, {{"bodies.cloth.mesh", "null"}}), InputError) << "a key that has to be there";
 }
 
 TEST_F(ReadScene, OverridesOfNothingAreRefusedByName) {

@@ -295,6 +295,18 @@ test('a comparison maps every step of every solver and says how to repeat it', (
       await page.locator('figure.heat pre').textContent(),
       /^taut compare .*hanging_cloth.json --solvers augmented_lagrangian /,
     );
+    assert.equal(await page.locator('[id^=chart-error]').getAttribute('data-points'), '2');
     assert.equal(await page.locator('[id^=chart-accuracy]').getAttribute('data-points'), '2');
     assert.equal(await page.locator('[id^=table-entries] tbody tr').count(), 2);
+  }));
+
+test('a comparison shows the mesh of the reference and where another solver ends elsewhere', () =>
+  open('compare', async (page) => {
+    assert.match(await page.locator('#viewer').textContent(), /hanging_cloth as augmented_lagrangian solved it/);
+    assert.equal(await mesh(page).getAttribute('data-frame'), '3');
+    const stretch = await mesh(page).screenshot();
+    const { drawn } = await pixelsOf(page, stretch);
+    assert.ok(drawn > 0.03, `${drawn} of the pixels are drawn`);
+    await page.locator('#viewer select').selectOption({ label: 'distance to multiplier_loop' });
+    assert.ok(!stretch.equals(await mesh(page).screenshot()), 'another colour');
   }));

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "problems/build.h"
 #include "problems/read_scene.h"
 #include "report/run_report.h"
 #include "study/run.h"
@@ -114,6 +115,24 @@ TEST_F(ViewerData, ThickShellsHaveABottomAndATop) {
   };
   EXPECT_TRUE(named(", bottom"));
   EXPECT_TRUE(named(", top"));
+}
+
+TEST_F(ViewerData, OtherPositionsAreADistanceWhereTheyDiffer) {
+  const Scene made = scene("hanging_cloth", {{"bodies.cloth.mesh.grid.cells", "[4,4]"}});
+  Frame start;
+  start.positions = build_model(made)->start();
+  Vector moved = start.positions;
+  moved[2] += 0.25;  // the first vertex, upwards
+  const std::vector<ViewerFrame> frames{{0, [&] { return start; }, "start"}, {1, [&] { return start; }, "start"}};
+  const Json data = viewer_data(made, frames,
+                                {{"same", [&](int) { return start.positions; }},
+                                 {"moved", [&](int step) { return step == 1 ? std::optional(moved) : std::nullopt; }}});
+  EXPECT_THAT(steps_of(data), testing::ElementsAre(0, 1));
+  EXPECT_FALSE(has_field(data, "distance_same"));
+  ASSERT_TRUE(has_field(data, "distance_moved"));
+  EXPECT_NEAR(data["fields"].back()["most"], 0.25, 1e-12);
+  EXPECT_EQ(data["fields"].back()["least"], 0);
+  EXPECT_TRUE(data["picture"].is_null());
 }
 
 TEST_F(ViewerData, ARunsReportHasAPointForEveryStep) {

@@ -23,13 +23,13 @@ StartingPoints points(const std::string& body, const std::vector<Vector3>& at) {
   return start;
 }
 
-TEST(CommonVertices, AreThoseOfOneBodyAtOnePlace) {
+TEST(CommonPoints, AreThoseOfOneBodyAtOnePlace) {
   const StartingPoints coarse = points("cloth", {{0, 0, 0}, {1, 0, 0}});
   const StartingPoints fine = points("cloth", {{1 + 1e-9, 0, 0}, {0.5, 0, 0}, {0, 0, 0}});
-  const auto common = common_vertices({coarse, fine}, 1);
-  EXPECT_THAT(common[0], ElementsAre(0, 1));
-  EXPECT_THAT(common[1], ElementsAre(2, 0));
-  EXPECT_THAT(common_vertices({coarse, points("other", {{0, 0, 0}})}, 1)[0], IsEmpty());
+  const auto common = common_points({coarse, fine}, 1);
+  EXPECT_THAT(common[0], ElementsAre(BodyPoint{0, 0}, BodyPoint{1, 1}));
+  EXPECT_THAT(common[1], ElementsAre(BodyPoint{2, 2}, BodyPoint{0, 0}));
+  EXPECT_THAT(common_points({coarse, points("other", {{0, 0, 0}})}, 1)[0], IsEmpty());
 }
 
 class ChartErrors : public FilesTest {
@@ -42,9 +42,28 @@ class ChartErrors : public FilesTest {
 };
 
 TEST_F(ChartErrors, NestedGridsShareTheVerticesOfTheCoarsest) {
-  const auto common = common_vertices({start({}), start({{"bodies.cloth.mesh.grid.cells", "[8,8]"}})}, 1.4);
+  const auto common = common_points({start({}), start({{"bodies.cloth.mesh.grid.cells", "[8,8]"}})}, 1.4);
   EXPECT_THAT(common[0], SizeIs(25));
   EXPECT_THAT(common[1], SizeIs(25));
+}
+
+TEST_F(ChartErrors, ASheetIsWhereTheMiddleOfAThickShellIs) {
+  const StartingPoints sheet = start({}),
+                       shell = start({{"bodies.cloth.model", "thick_shell"},
+                                      {"bodies.cloth.membrane", "null"},
+                                      {"bodies.cloth.bending", "null"},
+                                      {"bodies.cloth.thickness", "0.01"},
+                                      {"bodies.cloth.material",
+                                       R"({"law": "stvk", "young_modulus": 1e4, "poisson_ratio": 0.2})"}});
+  const auto common = common_points({sheet, shell}, 1.4);
+  ASSERT_THAT(common[0], SizeIs(25));
+  for (std::size_t k = 0; k < 25; ++k) {
+    const auto [bottom, top] = common[1][k];
+    const Vector3 low = shell.positions.segment<3>(3 * bottom), high = shell.positions.segment<3>(3 * top);
+    EXPECT_NEAR((high - low).norm(), 0.01, 1e-12);
+    EXPECT_NEAR(((low + high) / 2 - sheet.positions.segment<3>(3 * common[0][k][0])).norm(), 0, 1e-12);
+  }
+  EXPECT_THAT(common_points({shell, shell}, 1.4)[0], SizeIs(75)) << "two surfaces and the middle";
 }
 
 TEST_F(ChartErrors, ProbesAreMeasuredAsTheFileSays) {

@@ -62,6 +62,11 @@ TEST_F(ChartKnob, ModelsAreFilesOrOverrides) {
   ASSERT_EQ(models.size(), 2u);
   EXPECT_EQ(models[0].problem, "other.json");
   EXPECT_THAT(models[1].overrides, ElementsAre(Pair("gravity", "[0,0,-1]"), Pair("time.steps", "2")));
+  const std::vector<KnobValue> named = values(R"(model=thin:other.json,falls:gravity={"x":1})");
+  EXPECT_EQ(named[0].label, "thin");
+  EXPECT_EQ(named[0].problem, "other.json");
+  EXPECT_EQ(named[1].label, "falls");
+  EXPECT_THAT(named[1].overrides, ElementsAre(Pair("gravity", R"({"x":1})")));
 }
 
 TEST_F(ChartKnob, AnyOtherNameIsAKeyAndNeedsValues) {

@@ -100,5 +100,31 @@ TEST(Spread, IsMedianAndRange) {
   EXPECT_EQ(spread.max, 4);
 }
 
+/// An entry of one step that took so long, ended so far from the reference, and was judged so.
+EntryRun entry_of(const std::string& group, double seconds, double distance, Status judged = Status::solved) {
+  EntryRun run;
+  run.group = group;
+  run.steps_asked = 1;
+  StepTrial& trial = run.trials.emplace_back();
+  trial.seconds = {seconds};
+  trial.distance.emplace().positions = distance;
+  trial.result.status = trial.judged = judged;
+  return run;
+}
+
+TEST(Front, IsOfSolvedEntriesThatNoneOfTheirGroupBeatsInTimeAndDistance) {
+  std::vector<EntryRun> runs{entry_of("", 1, 1e-3), entry_of("", 2, 1e-2),  // slower and farther than the first
+                             entry_of("", 3, 1e-5), entry_of("", 0.5, 1e-9, Status::stalled),
+                             entry_of(" step=2", 9, 1)};
+  runs.push_back(entry_of("", 0.1, 1e-9));
+  runs.back().steps_asked = 2;  // one of two
+  runs.push_back(entry_of("", 0.1, 0));
+  runs.back().trials.front().distance.reset();
+  mark_front(runs);
+  std::vector<bool> front;
+  for (const EntryRun& run : runs) front.push_back(run.on_front);
+  EXPECT_THAT(front, ElementsAre(true, false, true, false, true, false, false));
+}
+
 }  // namespace
 }  // namespace taut
