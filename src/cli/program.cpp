@@ -84,6 +84,7 @@ int run_program(int argc, char** argv) {
   add_schema(program, code);
   add_compare(program, code);
   add_chart(program, code);
+  add_lean(program, code);
   add_stress(program, code);
   add_modes(program, code);
   add_replay(program, code);
