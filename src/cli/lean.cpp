@@ -35,6 +35,7 @@ LeanOptions options_of(const LeanArguments& arguments) {
   options.threads = arguments.threads;
   options.program = {"/proc/self/exe"};
   options.version = TAUT_VERSION;
+  options.known = arguments.known;
   options.stop = &stop_on_signals();
   if (!arguments.quiet) {
     options.on_rung = [](const LeanRung& rung) {
@@ -102,6 +103,15 @@ constexpr const char* footer =
 
 void add_lean_question(CLI::App& command, LeanArguments& arguments) {
   command.add_option("--quantity", arguments.quantity, "What is asked (default displacement)")->type_name("Q");
+  command.add_option("--max-seconds", arguments.max_seconds, "Stop after this time with the best found (exit code 3)")
+      ->type_name("S")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--threads", arguments.threads, "Threads of each solver (default 1)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 255));
+  command.add_option("--memory-limit", arguments.memory_limit, "MB for each model (default 8192); 0: no limit")
+      ->type_name("MB")
+      ->check(CLI::NonNegativeNumber);
 }
 
 int check_lean_problem(const LeanArguments& arguments) {
@@ -128,15 +138,10 @@ void add_lean(CLI::App& program, int& code) {
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command->add_option("--max-seconds", arguments->max_seconds, "Stop after this time with the best found (exit code 3)")
-      ->type_name("S")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--threads", arguments->threads, "Threads of each solver (default 1)")
-      ->type_name("N")
-      ->check(CLI::Range(1, 255));
-  command->add_option("--memory-limit", arguments->memory_limit, "MB for each model (default 8192); 0: no limit")
-      ->type_name("MB")
-      ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--known", arguments->known,
+                   "A run of the scene as written (solve --out): adds the true error of every model, changes no choice")
+      ->type_name("DIR");
   command->add_option("--out", arguments->out, "Write everything to this directory")->type_name("DIR");
   add_report_option(*command, arguments->report);
   command->add_flag("--json", arguments->json, "Print lean.json on standard output, and nothing else there");

@@ -48,13 +48,16 @@ std::string mark_of(const LeanOutcome& outcome, std::size_t k) {
 
 TextTable rung_table(const LeanStudy& study) {
   TextTable table{{"", "model", study.quantity.kind == QuantityOfInterest::Kind::shape ? "moved" : "answer",
-                   "estimated", "verified", "s", "solves"}};
+                   "estimated", "verified", "true", "s", "solves"}};
   for (std::size_t k = 0; k < study.outcome.rungs.size(); ++k) {
     const LeanRung& rung = study.outcome.rungs[k];
     table.push_back({mark_of(study.outcome, k), rung.words, answer_text(study, rung), error_text(study, rung.estimated),
-                     error_text(study, rung.verified), fmt::format("{:.2f}", rung.seconds),
-                     std::to_string(rung.linear_solves)});
+                     error_text(study, rung.verified), error_text(study, rung.true_error),
+                     fmt::format("{:.2f}", rung.seconds), std::to_string(rung.linear_solves)});
   }
+  if (study.known_seconds) return table;
+  const auto column = std::find(table[0].begin(), table[0].end(), "true") - table[0].begin();
+  for (auto& row : table) row.erase(row.begin() + column);
   return table;
 }
 

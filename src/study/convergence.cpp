@@ -6,13 +6,13 @@
 
 namespace taut {
 
-double Convergence::ratio() const {
+std::optional<double> Convergence::measured_ratio() const {
   for (auto fine = differences_.begin(); fine != differences_.end(); ++fine) {
     const auto coarse = differences_.find(fine->first + 1);
     if (coarse == differences_.end() || !(coarse->second > 0) || !std::isfinite(coarse->second)) continue;
     return std::clamp(fine->second / coarse->second, smallest_ratio, largest_ratio);
   }
-  return usual_ratio;
+  return {};
 }
 
 double Convergence::error(int level) const {

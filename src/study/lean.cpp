@@ -55,6 +55,7 @@ class Runner {
       : options_(options), full_(full), ladder_(ladder), observer_(options.quantity, full), start_(Clock::now()) {}
 
   LeanRung run(const Levels& levels);
+  const Observer& observer() const { return observer_; }
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
   bool interrupted() const { return options_.stop && options_.stop->load(std::memory_order_relaxed); }
   bool out_of_time() const { return options_.max_seconds > 0 && seconds() >= options_.max_seconds; }
@@ -134,6 +135,20 @@ LeanStudy new_study(const LeanOptions& options, const Scene& full, LeanLadder la
   return study;
 }
 
+/// Adds the errors against a run of the full scene that was there before the search.
+void measure_true_errors(const LeanOptions& options, const Scene& full, const Observer& observer, LeanStudy& study) {
+  if (options.known.empty()) return;
+  const StoredRun run = read_stored_run(options.known);
+  if (run.scene.hash != full.hash) throw RunRefused(options.known.string() + ": is a run of another problem");
+  const std::optional<Answer> answer = observer(run);
+  if (!answer || run.summary.status != Status::solved)
+    throw RunRefused(options.known.string() + ": has no answer to " + options.quantity.text());
+  study.known_seconds = run.summary.seconds.total;
+  study.outcome.magnitude = answer->magnitude;
+  for (LeanRung& rung : study.outcome.rungs)
+    if (rung.answer) rung.true_error = distance(*rung.answer, *answer);
+}
+
 void finish(const LeanOptions& options, LeanStudy& study) {
   write_atomically(options.folder / lean_file, lean_text(study));
 }
@@ -147,6 +162,7 @@ LeanStudy lean(const LeanOptions& options) {
   begin(options.folder);
   study.outcome = lean_search(study.ladder, options.tolerance, runner.callbacks());
   study.seconds = runner.seconds();
+  measure_true_errors(options, full, runner.observer(), study);
   if (study.outcome.lean) {
     study.file = full.name + ".lean.json";
     write_rung(full, study.ladder, study.outcome.rungs[*study.outcome.lean].levels, full.name + "_lean",

@@ -21,6 +21,7 @@ Json rung_json(const LeanRung& rung, const LeanLadder& ladder) {
   json["magnitude"] = rung.answer ? Json(rung.answer->magnitude) : Json();
   json["estimated_error"] = number_or_null(rung.estimated);
   json["verified_error"] = number_or_null(rung.verified);
+  json["true_error"] = number_or_null(rung.true_error);
   json["seconds"] = rung.seconds;
   json["linear_solves"] = rung.linear_solves;
   json["peak_memory_bytes"] = rung.peak_memory_bytes;
@@ -69,7 +70,10 @@ std::string lean_text(const LeanStudy& study) {
   json["file"] = study.file;
   json["verified_against"] = name_or_null(outcome, outcome.above);
   json["full"] = name_or_null(outcome, outcome.full);
-  json["full_seconds"] = {{"value", outcome.predicted_full_seconds}, {"measured", outcome.full.has_value()}};
+  json["full_seconds"] = {{"value", study.full_seconds()},
+                          {"from", study.known_seconds ? "known"
+                                   : outcome.full      ? "measured"
+                                                       : "predicted"}};
   json["search_seconds"] = study.seconds;
   json["costs_more_than_full"] = study.costs_more_than_full();
   json["rungs"] = Json::array();

@@ -230,12 +230,15 @@ void write_rung(const Scene& scene, const LeanLadder& ladder, const Levels& leve
 }
 
 std::string words_of(const LeanLadder& ladder, const Levels& levels) {
+  if (std::all_of(levels.begin(), levels.end(), [](int level) { return level == 0; })) return "as written";
   std::string words;
   for (std::size_t k = 0; k < levels.size(); ++k) {
-    if (levels[k] == 0) continue;
-    words += (words.empty() ? "" : ", ") + ladder.simplifications[k].levels[static_cast<std::size_t>(levels[k])];
+    const Simplification& one = ladder.simplifications[k];
+    const bool named = levels[k] > 0 || (one.kind == Kind::refinement && one.name != "tolerance");
+    if (!named) continue;
+    words += (words.empty() ? "" : ", ") + one.levels[static_cast<std::size_t>(levels[k])];
   }
-  return words.empty() ? "as written" : words;
+  return words;
 }
 
 }  // namespace taut

@@ -48,6 +48,8 @@ class Search {
   Levels with(std::size_t k, int level) const;
   double estimate(const Levels& levels) const;
   double saving(const Levels& levels) const;
+  void learn_costs(const LeanRung& now);
+  bool is_futile();
   void find_start();
   void measure(std::size_t k);
   void screen();
@@ -78,6 +80,7 @@ std::size_t Search::run(const Levels& levels) {
   LeanRung done = runner_.run(levels);
   if (done.status != "solved" && (runner_.interrupted() || runner_.out_of_time())) throw Halt{};
   done.levels = levels;
+  learn_costs(done);
   outcome_.rungs.push_back(std::move(done));
   return outcome_.rungs.size() - 1;
 }
@@ -127,6 +130,40 @@ double Search::saving(const Levels& levels) const {
   return product;
 }
 
+/// From the last model before that is coarser or as fine in every refinement: what one level costs.
+void Search::learn_costs(const LeanRung& now) {
+  if (!now.answer || now.seconds < telling_seconds) return;
+  for (std::size_t last = outcome_.rungs.size(); last-- > 0;) {
+    const LeanRung& before = outcome_.rungs[last];
+    int levels = 0;
+    bool coarser = before.answer.has_value();
+    for (std::size_t k = 0; k < levels_.size(); ++k) {
+      if (!refines(k)) continue;
+      coarser = coarser && before.levels[k] >= now.levels[k];
+      levels += before.levels[k] - now.levels[k];
+    }
+    if (!coarser || levels == 0) continue;
+    const double expected = saving(before.levels) / saving(now.levels),
+                 correction = std::pow(now.seconds / before.seconds / expected, 1.0 / levels);
+    for (std::size_t k = 0; k < levels_.size(); ++k)
+      if (refines(k) && before.levels[k] > now.levels[k]) cost_ratio_[k] = std::max(1.0, correction * cost_ratio_[k]);
+    return;
+  }
+}
+
+/// True where even the finest models that are cheaper than the full scene, each with one refinement alone made
+/// coarser, are expected to be too wrong.
+bool Search::is_futile() {
+  double smallest = infinity;
+  for (std::size_t k = 0; k < levels_.size(); ++k) {
+    if (!refines(k) || cost_ratio_[k] <= 1) continue;
+    const int level = static_cast<int>(std::ceil(std::log(least_saving) / std::log(cost_ratio_[k]) - 1e-9));
+    if (level > ladder_.simplifications[k].simplest()) continue;
+    smallest = std::min(smallest, convergence_[k].tells() ? pessimism_ * convergence_[k].error(level) : 0);
+  }
+  return smallest > allowed();
+}
+
 /// Where every refinement is at its simplest, or at the first level that is solved.
 void Search::find_start() {
   for (std::size_t k = 0; k < levels_.size(); ++k) levels_[k] = refines(k) ? ladder_.simplifications[k].simplest() : 0;
@@ -137,8 +174,6 @@ void Search::find_start() {
 void Search::measure(std::size_t k) {
   const std::size_t coarse = run(levels_), fine = run(with(k, levels_[k] - 1));
   convergence_[k].add(levels_[k], between(coarse, fine));
-  const double before = rung(coarse).seconds, after = rung(fine).seconds;
-  if (rung(fine).answer && after > telling_seconds) cost_ratio_[k] = std::max(1.0, after / before);
 }
 
 /// Tries an omission, from its simplest form on, and keeps the first that changes little enough.
@@ -302,7 +337,7 @@ LeanOutcome Search::go() {
       while (!done) {
         if (lean_safety * estimate(levels_) <= allowed()) {
           done = verify();
-        } else if (!refine()) {
+        } else if (is_futile() || !refine()) {
           end_with_full();
           done = true;
         }

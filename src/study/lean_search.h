@@ -24,6 +24,7 @@ struct LeanRung {
   std::int64_t peak_memory_bytes = 0;
   std::vector<std::string> command;  ///< the words that solve the same again
   std::optional<double> estimated;   ///< error against the full scene, without the safety factor
+  std::optional<double> true_error;  ///< against a run of the full scene that was known before
   std::optional<double> verified;    ///< distance from the full scene where that was run, else from the rung above
                                      ///< plus what that one lacks by the estimate
 };
