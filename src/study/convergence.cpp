@@ -15,9 +15,9 @@ std::optional<double> Convergence::measured_ratio() const {
   return {};
 }
 
-double Convergence::error(int level) const {
+double Convergence::error(int level, double q) const {
   if (level == 0) return 0;
-  const double q = ratio(), sum = (1 - std::pow(q, level)) / (1 - q);
+  const double sum = (1 - std::pow(q, level)) / (1 - q);
   if (const auto own = differences_.find(level); own != differences_.end()) return own->second * sum;
   double largest = -1;
   for (auto coarse = differences_.upper_bound(level); coarse != differences_.end(); ++coarse)

@@ -20,15 +20,16 @@ class Convergence {
   /// Of the levels `level` and `level - 1`; infinite where one of them was not solved.
   void add(int level, double difference) { differences_[level] = difference; }
   bool knows(int level) const { return differences_.contains(level); }
-  /// True where two neighbouring differences say how fast they shrink.
-  bool tells() const { return measured_ratio().has_value(); }
   /// q from the two finest neighbouring differences.
   double ratio() const { return measured_ratio().value_or(usual_ratio); }
   /// Expected error of a level against level 0: from its own difference, else the largest that coarser ones predict.
   /// Infinite where nothing is known, 0 for level 0.
-  double error(int level) const;
+  double error(int level) const { return error(level, ratio()); }
+  /// The same where q is not measured and as small as it may be.
+  double least_error(int level) const { return error(level, measured_ratio().value_or(smallest_ratio)); }
 
  private:
+  double error(int level, double q) const;
   std::optional<double> measured_ratio() const;
 
   std::map<int, double> differences_;

@@ -55,6 +55,7 @@ class Search {
   void screen();
   void screen_one(std::size_t k, std::size_t base, std::vector<double>& changes);
   void accept_together(std::size_t base, std::vector<double>& changes);
+  std::optional<std::size_t> next_refinement();
   bool refine();
   bool verify();
   void end_with_full();
@@ -159,7 +160,7 @@ bool Search::is_futile() {
     if (!refines(k) || cost_ratio_[k] <= 1) continue;
     const int level = static_cast<int>(std::ceil(std::log(least_saving) / std::log(cost_ratio_[k]) - 1e-9));
     if (level > ladder_.simplifications[k].simplest()) continue;
-    smallest = std::min(smallest, convergence_[k].tells() ? pessimism_ * convergence_[k].error(level) : 0);
+    smallest = std::min(smallest, pessimism_ * convergence_[k].least_error(level));
   }
   return smallest > allowed();
 }
@@ -235,26 +236,35 @@ void Search::screen() {
   accept_together(base, changes);
 }
 
-/// Makes what is expected to be farthest off better. False where nothing is left to do.
-bool Search::refine() {
-  std::optional<std::size_t> worst;
-  double largest = -1;
+/// The refinement to improve next: of those whose error alone is too large, which have to be refined in any case, the
+/// one that costs least; else that with the largest error.
+std::optional<std::size_t> Search::next_refinement() {
+  std::optional<std::size_t> cheapest, worst;
   for (std::size_t k = 0; k < levels_.size(); ++k) {
-    if (!refines(k) || levels_[k] == 0 || convergence_[k].error(levels_[k]) <= largest) continue;
-    largest = convergence_[k].error(levels_[k]);
-    worst = k;
+    if (!refines(k) || levels_[k] == 0) continue;
+    const double error = convergence_[k].error(levels_[k]);
+    if (!worst || error > convergence_[*worst].error(levels_[*worst])) worst = k;
+    const bool too_large = lean_safety * pessimism_ * error > allowed();
+    if (too_large && (!cheapest || cost_ratio_[k] < cost_ratio_[*cheapest])) cheapest = k;
   }
-  if (omitted_ > largest) {
+  return cheapest ? cheapest : worst;
+}
+
+/// Makes a refinement finer, or puts back what was left out where that is more wrong. False where nothing is left to do
+/// that would be cheaper than the full scene.
+bool Search::refine() {
+  const std::optional<std::size_t> next = next_refinement();
+  if (omitted_ > 0 && (!next || omitted_ > convergence_[*next].error(levels_[*next]))) {
     for (std::size_t k = 0; k < levels_.size(); ++k)
       if (!refines(k)) levels_[k] = 0;
     omitted_ = 0;
     return true;
   }
-  if (!worst) return false;
-  if (convergence_[*worst].knows(levels_[*worst]))
-    --levels_[*worst];
-  else if (saving(with(*worst, levels_[*worst] - 1)) >= least_saving)
-    measure(*worst);
+  if (!next) return false;
+  if (convergence_[*next].knows(levels_[*next]))
+    --levels_[*next];
+  else if (saving(with(*next, levels_[*next] - 1)) >= least_saving)
+    measure(*next);
   else
     return false;
   return true;
@@ -264,7 +274,7 @@ bool Search::refine() {
 bool Search::verify() {
   const Levels finer = above(levels_);
   if (is_full(finer) || saving(finer) < least_saving) {
-    run(levels_);
+    if (saving(levels_) >= least_saving) run(levels_);
     end_with_full();
     return true;
   }
