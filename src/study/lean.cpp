@@ -54,20 +54,20 @@ class Runner {
   Runner(const LeanOptions& options, const Scene& full, const LeanLadder& ladder)
       : options_(options), full_(full), ladder_(ladder), observer_(options.quantity, full), start_(Clock::now()) {}
 
-  LeanRung run(const Levels& levels);
+  LeanRung run(const Levels& levels, double max_seconds = 0);
   const Observer& observer() const { return observer_; }
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
   bool interrupted() const { return options_.stop && options_.stop->load(std::memory_order_relaxed); }
   bool out_of_time() const { return options_.max_seconds > 0 && seconds() >= options_.max_seconds; }
   LeanRunner callbacks() {
-    return {.run = [this](const Levels& levels) { return run(levels); },
+    return {.run = [this](const Levels& levels, double max_seconds) { return run(levels, max_seconds); },
             .interrupted = [this] { return interrupted(); },
             .out_of_time = [this] { return out_of_time(); }};
   }
 
  private:
   using Clock = std::chrono::steady_clock;
-  void solve(const fs::path& file, LeanRung& rung) const;
+  void solve(const fs::path& file, double max_seconds, LeanRung& rung) const;
 
   const LeanOptions& options_;
   const Scene& full_;
@@ -77,8 +77,9 @@ class Runner {
   int runs_ = 0;
 };
 
-void Runner::solve(const fs::path& file, LeanRung& rung) const {
-  const double left = options_.max_seconds > 0 ? std::max(0.1, options_.max_seconds - seconds()) : unlimited_seconds;
+void Runner::solve(const fs::path& file, double max_seconds, LeanRung& rung) const {
+  double left = max_seconds > 0 ? max_seconds : unlimited_seconds;
+  if (options_.max_seconds > 0) left = std::min(left, std::max(0.1, options_.max_seconds - seconds()));
   const ChartProcess process{.program = options_.program,
                              .folder = options_.folder,
                              .threads = options_.threads,
@@ -105,7 +106,7 @@ void Runner::solve(const fs::path& file, LeanRung& rung) const {
   }
 }
 
-LeanRung Runner::run(const Levels& levels) {
+LeanRung Runner::run(const Levels& levels, double max_seconds) {
   LeanRung rung;
   rung.levels = levels;
   rung.words = words_of(ladder_, levels);
@@ -113,7 +114,7 @@ LeanRung Runner::run(const Levels& levels) {
   const fs::path file = options_.folder / problems_folder / (rung.name + ".json");
   try {
     write_rung(full_, ladder_, levels, rung.name, file);
-    solve(file, rung);
+    solve(file, max_seconds, rung);
   } catch (const InputError& error) {
     rung.status = "cannot be built";
     rung.message = error.what();

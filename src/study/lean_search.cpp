@@ -14,6 +14,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double share_of_omissions = 0.5;
 /// A rung that is not this much cheaper than the full scene is not worth running: the full scene is.
 constexpr double least_saving = 2;
+/// What is left out should save time: a trial that takes this many times as long, and a second, is given up.
+constexpr double patience = 1.5;
 /// From here on the seconds of two runs tell how costs grow.
 constexpr double telling_seconds = 0.5;
 
@@ -40,7 +42,7 @@ class Search {
 
  private:
   bool refines(std::size_t k) const { return ladder_.simplifications[k].kind == Simplification::Kind::refinement; }
-  std::size_t run(const Levels& levels);
+  std::size_t run(const Levels& levels, double max_seconds = 0);
   LeanRung& rung(std::size_t index) { return outcome_.rungs[index]; }
   double between(std::size_t a, std::size_t b);
   double allowed();
@@ -74,11 +76,11 @@ class Search {
 };
 
 /// The place of a model among those that were run, where it is put if it was not.
-std::size_t Search::run(const Levels& levels) {
+std::size_t Search::run(const Levels& levels, double max_seconds) {
   for (std::size_t k = 0; k < outcome_.rungs.size(); ++k)
     if (outcome_.rungs[k].levels == levels) return k;
   if (runner_.interrupted() || runner_.out_of_time()) throw Halt{};
-  LeanRung done = runner_.run(levels);
+  LeanRung done = runner_.run(levels, max_seconds);
   if (done.status != "solved" && (runner_.interrupted() || runner_.out_of_time())) throw Halt{};
   done.levels = levels;
   learn_costs(done);
@@ -181,7 +183,7 @@ void Search::measure(std::size_t k) {
 void Search::screen_one(std::size_t k, std::size_t base, std::vector<double>& changes) {
   const Simplification& omission = ladder_.simplifications[k];
   for (int level = omission.simplest(); level > 0; --level) {
-    const std::size_t trial = run(with(k, level));
+    const std::size_t trial = run(with(k, level), patience * rung(base).seconds + 1);
     OmissionTrial record{.what = omission.levels[static_cast<std::size_t>(level)],
                          .change = between(base, trial),
                          .left_out = false,

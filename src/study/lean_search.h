@@ -59,8 +59,8 @@ struct LeanOutcome {
 
 /// How models are run and when to stop.
 struct LeanRunner {
-  /// Runs one model, whatever becomes of it.
-  std::function<LeanRung(const Levels&)> run;
+  /// Runs one model, whatever becomes of it; for at most so many seconds where they are not 0.
+  std::function<LeanRung(const Levels&, double max_seconds)> run;
   /// True once no further model may be started, and the last one may have been cut short.
   std::function<bool()> interrupted, out_of_time;
 };
