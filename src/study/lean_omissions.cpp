@@ -61,8 +61,9 @@ void put_layer(Json& body, const Json& layer) {
   body.update(layer);
 }
 
-/// A plate's bending stiffness and plane stress, as a sheet has them.
-void make_sheet(Json& body) {
+/// A plate's bending stiffness and plane stress, as a sheet has them. Its only surface needs no name.
+void make_sheet(Json& document, const std::string& name) {
+  Json& body = document["bodies"][name];
   const std::optional<Json> layer = merged_layer(body);
   if (!layer) return;
   const Json& material = (*layer)["material"];
@@ -72,6 +73,10 @@ void make_sheet(Json& body) {
   if (body["model"] == "thick_shell") body["model"] = "cloth";
   body["membrane"] = material;
   body["bending"] = {{"stiffness", modulus * t * t * t / (12 * (1 - nu * nu))}};
+  const bool alone = document["bodies"].size() == 1;
+  for (Json* parts : {&document["constraints"], &document["loads"], &document["output"]["probes"]})
+    for (Json& part : *parts)
+      if (part.contains("body") ? part["body"] == name : alone) part.erase("surface");
 }
 
 bool ends_with_msh(const Json& body) {
@@ -85,7 +90,7 @@ void add_thick_shells(const std::string& name, const Json& body, LeanLadder& lad
     refuse(ladder, sheet, "it has plies, layers of different laws, or a thickness that varies");
     return;
   }
-  add(ladder, sheet, {name + " as a sheet"}, [name](Json& json, int) { make_sheet(json["bodies"][name]); });
+  add(ladder, sheet, {name + " as a sheet"}, [name](Json& json, int) { make_sheet(json, name); });
   if (!body.contains("layers")) return;
   const Json& layers = body["layers"];
   const bool divided = std::any_of(layers.begin(), layers.end(), [](const Json& l) { return l["prisms"] > 1; });

@@ -173,10 +173,12 @@ void Search::find_start() {
   while (!rung(run(levels_)).answer && !is_full(levels_)) levels_ = above(levels_);
 }
 
-/// What one level more of a refinement changes.
+/// What one level more of a refinement changes. Where it is cheaper, as shorter steps can be, the search goes there.
 void Search::measure(std::size_t k) {
   const std::size_t coarse = run(levels_), fine = run(with(k, levels_[k] - 1));
   convergence_[k].add(levels_[k], between(coarse, fine));
+  const bool cheaper = rung(coarse).seconds > telling_seconds && rung(fine).seconds < rung(coarse).seconds;
+  if (rung(fine).answer && cheaper) --levels_[k];
 }
 
 /// Tries an omission, from its simplest form on, and keeps the first that changes little enough.
@@ -342,7 +344,7 @@ LeanOutcome Search::go() {
     if (is_full(levels_)) {
       end_with_full();
     } else {
-      for (std::size_t k = 0; k < levels_.size(); ++k)
+      for (std::size_t k = levels_.size(); k-- > 0;)  // the mesh, which costs most, last
         if (refines(k) && levels_[k] > 0) measure(k);
       screen();
       bool done = false;
