@@ -1,4 +1,4 @@
-"""Ten scenes by `taut lean`: the table and the chart of lean.md.
+"""Ten scenes by `taut lean`: the tables and the chart of lean.md.
 
     python3 docs/guide/lean_table.py build/release/taut DIR
 
@@ -65,6 +65,16 @@ def points(study):
             for rung in study["rungs"] if rung["estimated_error"] and rung["true_error"] and rung["status"] == "solved"]
 
 
+def print_safety(all_points):
+    """How often estimates held, by safety factor: what lean_safety was chosen by."""
+    found = [point for point in all_points if point[2]]
+    print("| safety factor | estimates that hold, all models | models found |")
+    print("|---|---|---|")
+    for factor in (1, 1.2, 1.5, 2, 3, 10):
+        held = [sum(true <= factor * estimated for estimated, true, _ in points) for points in (all_points, found)]
+        print(f"| {factor} | {held[0]} of {len(all_points)} | {held[1]} of {len(found)} |")
+
+
 def chart(all_points):
     """Estimated against true error, both logarithmic; on the line they are equal, models found are filled."""
     low, high, size, margin = -5, 1, 420, 50
@@ -105,6 +115,8 @@ def main():
     for cells in rows:
         print("| " + " | ".join(cells) + " |")
     chart(all_points)
+    print()
+    print_safety(all_points)
 
 
 if __name__ == "__main__":

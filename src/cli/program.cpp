@@ -27,6 +27,7 @@ constexpr const char* footer =
     "  taut solve --help                         everything about solving\n"
     "  taut compare --help                       solvers against each other\n"
     "  taut chart --help                         speed against accuracy\n"
+    "  taut lean --help                          the cheapest model that answers a question\n"
     "\n"
     "Exit codes: 0 solved within tolerance, 1 internal error or a file that cannot be written,\n"
     "2 wrong usage or input, 3 not solved (the result is written all the same), 130 interrupted.";

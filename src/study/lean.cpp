@@ -96,6 +96,7 @@ void Runner::solve(const fs::path& file, double max_seconds, LeanRung& rung) con
   rung.status = point.status;
   rung.message = point.message;
   rung.linear_solves = point.counts.linear_solves;
+  rung.work = point.counts.factor_flops;
   rung.peak_memory_bytes = point.peak_memory_bytes;
   rung.command = point.command;
   if (!point.solved()) return;

@@ -16,9 +16,6 @@ constexpr double share_of_omissions = 0.5;
 constexpr double least_saving = 2;
 /// What is left out should save time: a trial that takes this many times as long, and a second, is given up.
 constexpr double patience = 1.5;
-/// From here on the seconds of two runs tell how costs grow.
-constexpr double telling_seconds = 0.5;
-
 /// No further model may be started.
 struct Halt {};
 
@@ -60,6 +57,7 @@ class Search {
   std::optional<std::size_t> next_refinement();
   bool refine();
   bool verify();
+  bool is_cheaper(const LeanRung& a, const LeanRung& b) const;
   void end_with_full();
   void end_early();
   void summarise();
@@ -133,13 +131,14 @@ double Search::saving(const Levels& levels) const {
   return product;
 }
 
-/// From the last model before that is coarser or as fine in every refinement: what one level costs.
+/// From the last model before that is coarser or as fine in every refinement: what one level costs. In work, not in
+/// seconds, so that the search goes the same way on a busy machine.
 void Search::learn_costs(const LeanRung& now) {
-  if (!now.answer || now.seconds < telling_seconds) return;
+  if (!now.answer || now.work == 0) return;
   for (std::size_t last = outcome_.rungs.size(); last-- > 0;) {
     const LeanRung& before = outcome_.rungs[last];
     int levels = 0;
-    bool coarser = before.answer.has_value();
+    bool coarser = before.answer && before.work > 0;
     for (std::size_t k = 0; k < levels_.size(); ++k) {
       if (!refines(k)) continue;
       coarser = coarser && before.levels[k] >= now.levels[k];
@@ -147,7 +146,7 @@ void Search::learn_costs(const LeanRung& now) {
     }
     if (!coarser || levels == 0) continue;
     const double expected = saving(before.levels) / saving(now.levels),
-                 correction = std::pow(now.seconds / before.seconds / expected, 1.0 / levels);
+                 correction = std::pow(now.work / before.work / expected, 1.0 / levels);
     for (std::size_t k = 0; k < levels_.size(); ++k)
       if (refines(k) && before.levels[k] > now.levels[k]) cost_ratio_[k] = std::max(1.0, correction * cost_ratio_[k]);
     return;
@@ -177,7 +176,7 @@ void Search::find_start() {
 void Search::measure(std::size_t k) {
   const std::size_t coarse = run(levels_), fine = run(with(k, levels_[k] - 1));
   convergence_[k].add(levels_[k], between(coarse, fine));
-  const bool cheaper = rung(coarse).seconds > telling_seconds && rung(fine).seconds < rung(coarse).seconds;
+  const bool cheaper = rung(fine).work > 0 && rung(fine).work < rung(coarse).work;
   if (rung(fine).answer && cheaper) --levels_[k];
 }
 
@@ -297,6 +296,12 @@ bool Search::verify() {
   return false;
 }
 
+/// By what refinements should save, then by work.
+bool Search::is_cheaper(const LeanRung& a, const LeanRung& b) const {
+  const double first = saving(a.levels), second = saving(b.levels);
+  return first != second ? first > second : a.work < b.work;
+}
+
 /// Everything is compared with the full scene, and the cheapest of what is right is taken.
 void Search::end_with_full() {
   const std::size_t full = run(Levels(levels_.size(), 0));
@@ -307,8 +312,8 @@ void Search::end_with_full() {
   for (std::size_t k = 0; k < outcome_.rungs.size(); ++k) {
     if (!rung(k).answer) continue;
     rung(k).verified = between(k, full);
-    const bool cheaper = !outcome_.lean || rung(k).seconds < rung(*outcome_.lean).seconds;
-    if (*rung(k).verified <= allowed() && cheaper) outcome_.lean = k;
+    if (*rung(k).verified > allowed()) continue;
+    if (!outcome_.lean || is_cheaper(rung(k), rung(*outcome_.lean))) outcome_.lean = k;
   }
 }
 

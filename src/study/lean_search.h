@@ -21,6 +21,7 @@ struct LeanRung {
   std::optional<Answer> answer;        ///< where it is solved
   double seconds = 0;                  ///< by the clock
   std::int64_t linear_solves = 0;
+  double work = 0;  ///< flops of the factorisations; 0: not known
   std::int64_t peak_memory_bytes = 0;
   std::vector<std::string> command;  ///< the words that solve the same again
   std::optional<double> estimated;   ///< error against the full scene, without the safety factor
