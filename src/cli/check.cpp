@@ -13,6 +13,7 @@
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/lean.h"
 #include "files/atomic_file.h"
 #include "report/check_report.h"
 
@@ -23,10 +24,24 @@ namespace {
 struct CheckArguments {
   std::string subject, csv, out;
   std::vector<std::string> frames, settings;
-  std::optional<double> tolerance, step, first_time;
+  std::optional<double> step, first_time;
+  std::string tolerance;  // a number, or that of an answer
   double largest_fold = FrameOptions{}.largest_fold;
-  bool json = false, quiet = false;
+  bool lean = false, json = false, quiet = false;
+  LeanArguments question;  // of --lean
+
+  std::optional<double> violation() const;
 };
+
+/// --tolerance of violations, where it is given.
+std::optional<double> CheckArguments::violation() const {
+  if (tolerance.empty()) return {};
+  char* end = nullptr;
+  const double value = std::strtod(tolerance.c_str(), &end);
+  if (*end != '\0' || !std::isfinite(value) || !(value > 0))
+    throw UsageError("--tolerance: expected a number above 0, got " + tolerance);
+  return value;
+}
 
 CheckReport frames_report(const CheckArguments& arguments) {
   std::error_code error;
@@ -34,7 +49,7 @@ CheckReport frames_report(const CheckArguments& arguments) {
   const fs::path problem = is_run ? fs::path(arguments.subject) / "problem.json" : find_problem(arguments.subject);
   const Scene scene = read_scene(problem, parse_settings(arguments.settings));
   return check_frames(
-      scene, {arguments.frames, arguments.step, arguments.first_time, arguments.tolerance, arguments.largest_fold});
+      scene, {arguments.frames, arguments.step, arguments.first_time, arguments.violation(), arguments.largest_fold});
 }
 
 CheckReport run_report(const CheckArguments& arguments) try {
@@ -45,7 +60,7 @@ CheckReport run_report(const CheckArguments& arguments) try {
   if (!fs::is_directory(arguments.subject, error)) {
     throw UsageError(arguments.subject + ": is not the directory of a run; to judge other files, add --frames PATTERN");
   }
-  return check_run(arguments.subject, arguments.tolerance);
+  return check_run(arguments.subject, arguments.violation());
 } catch (const FileError& error) {  // files that are read: bad input
   throw UsageError(error.what());
 }
@@ -61,7 +76,22 @@ void write_files(const CheckArguments& arguments, const CheckReport& report) try
   throw UsageError(error.what());
 }
 
+/// `taut check --lean`: what of the problem could go.
+int check_lean(const CheckArguments& arguments) {
+  if (!arguments.frames.empty() || !arguments.csv.empty() || arguments.step || arguments.first_time)
+    throw UsageError("--frames, --csv, --dt and --first-time do not go with --lean");
+  LeanArguments question = arguments.question;
+  question.problem = arguments.subject;
+  question.settings = arguments.settings;
+  question.out = arguments.out;
+  question.json = arguments.json;
+  question.quiet = arguments.quiet;
+  if (!arguments.tolerance.empty()) question.tolerance = arguments.tolerance;
+  return check_lean_problem(question);
+}
+
 int check(const CheckArguments& arguments) {
+  if (arguments.lean) return check_lean(arguments);
   const CheckReport report = arguments.frames.empty() ? run_report(arguments) : frames_report(arguments);
   write_files(arguments, report);
   const std::string text = arguments.json ? check_json(report) : arguments.quiet ? "" : check_table(report);
@@ -91,6 +121,10 @@ constexpr const char* footer =
     "time (0) and each further number is --dt later (the problem's time step). Numbers that are missing are named.\n"
     "Quote patterns, so that a pattern that matches nothing is noticed.\n"
     "\n"
+    "A problem that models too much (PROBLEM --lean): it is solved as written, then once without each energy, limit,\n"
+    "obstacle, load, layer, and with each setting one level coarser; named are those without which --quantity changes\n"
+    "by at most --tolerance.\n"
+    "\n"
     "Exit codes: 0 all within tolerance, 1 internal error, 2 wrong usage or input: no run, a missing or damaged file,\n"
     "other vertices or faces, a NaN, or a file that cannot be written; 3 something is violated or a claim is not "
     "true.\n"
@@ -99,7 +133,8 @@ constexpr const char* footer =
     "  taut check out/cloth\n"
     "  taut check hanging_cloth --frames 'other/cloth_*.obj' --tolerance 1e-4\n"
     "  taut check problem.json --frames 'a/*.ply' --dt 0.04 --first-time 0.5 --csv check.csv\n"
-    "  taut check out/cloth --json | jq .findings";
+    "  taut check out/cloth --json | jq .findings\n"
+    "  taut check trampoline --lean --quantity displacement --tolerance 1%";
 
 CLI::Validator number(const char* name, bool (*allowed)(double)) {
   return CLI::Validator(
@@ -121,16 +156,15 @@ void add_check(CLI::App& program, int& code) {
   const auto positive = number(" above 0", [](double value) { return value > 0; });
   command
       ->add_option("SUBJECT", arguments->subject,
-                   "The directory of a run (solve --out); with --frames a problem file or the name of one")
+                   "The directory of a run (solve --out); with --frames or --lean a problem file or the name of one")
       ->required();
   command->add_option("--frames", arguments->frames, "Files to judge, a pattern in quotes or names; may be repeated")
       ->type_name("PATTERN");
   command
       ->add_option("--tolerance", arguments->tolerance,
                    "Violations allowed: singular values, and lengths relative to the scene's size; without it the "
-                   "problem's solver.tolerance.feasibility")
-      ->type_name("X")
-      ->check(positive);
+                   "problem's solver.tolerance.feasibility. With --lean: of the answer, as in taut lean (5%)")
+      ->type_name("X");
   command->add_option("--dt", arguments->step, "Seconds (static: load fraction) from one frame number to the next")
       ->type_name("S")
       ->check(positive);
@@ -148,6 +182,9 @@ void add_check(CLI::App& program, int& code) {
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_flag("--lean", arguments->lean,
+                    "Solve PROBLEM without each thing that it could do without, and name what makes no difference");
+  add_lean_question(*command, arguments->question);
   command->add_option("--csv", arguments->csv, "Write a line for each frame and constraint to this file")
       ->type_name("FILE");
   command->add_option("--out", arguments->out, "Write check.json and check.csv to this directory")->type_name("DIR");

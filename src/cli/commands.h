@@ -32,6 +32,7 @@ void add_list(CLI::App& program, int& code);
 void add_schema(CLI::App& program, int& code);
 void add_compare(CLI::App& program, int& code);
 void add_chart(CLI::App& program, int& code);
+void add_lean(CLI::App& program, int& code);
 void add_modes(CLI::App& program, int& code);
 void add_replay(CLI::App& program, int& code);
 void add_stress(CLI::App& program, int& code);

@@ -27,6 +27,7 @@ constexpr const char* footer =
     "  taut solve --help                         everything about solving\n"
     "  taut compare --help                       solvers against each other\n"
     "  taut chart --help                         speed against accuracy\n"
+    "  taut lean --help                          the cheapest model that answers a question\n"
     "\n"
     "Exit codes: 0 solved within tolerance, 1 internal error or a file that cannot be written,\n"
     "2 wrong usage or input, 3 not solved (the result is written all the same), 130 interrupted.";
@@ -84,6 +85,7 @@ int run_program(int argc, char** argv) {
   add_schema(program, code);
   add_compare(program, code);
   add_chart(program, code);
+  add_lean(program, code);
   add_stress(program, code);
   add_modes(program, code);
   add_replay(program, code);
