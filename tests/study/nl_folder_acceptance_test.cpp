@@ -20,7 +20,6 @@ TEST_F(NlFolder, OursIsNeverWrongAndNoSlowerThanIpopt) {
 #ifdef TAUT_WITH_IPOPT
   options.choice.solvers.push_back("ipopt");
 #endif
-  options.repeat = 3;
   options.worker = {TAUT_PROGRAM, "suite-worker"};
   options.logs = path(".");
   const Suite suite = run_suite(options);
