@@ -46,6 +46,7 @@ class Search {
   Levels above(const Levels& levels) const;
   Levels with(std::size_t k, int level) const;
   double estimate(const Levels& levels) const;
+  int coarseness(const Levels& levels) const;
   double saving(const Levels& levels) const;
   void learn_costs(const LeanRung& now);
   bool is_futile();
@@ -91,11 +92,19 @@ double Search::between(std::size_t a, std::size_t b) {
   return first && second ? distance(*first, *second) : infinity;
 }
 
+/// The sum of the levels of all refinements.
+int Search::coarseness(const Levels& levels) const {
+  int sum = 0;
+  for (std::size_t k = 0; k < levels.size(); ++k)
+    if (refines(k)) sum += levels[k];
+  return sum;
+}
+
 /// By the magnitude of the finest answer so far.
 double Search::allowed() {
   const LeanRung* finest = nullptr;
   for (const LeanRung& one : outcome_.rungs)
-    if (one.answer && (!finest || saving(one.levels) < saving(finest->levels))) finest = &one;
+    if (one.answer && (!finest || coarseness(one.levels) < coarseness(finest->levels))) finest = &one;
   outcome_.magnitude = finest ? finest->answer->magnitude : 0;
   outcome_.allowed = tolerance_.allowed(outcome_.magnitude);
   return outcome_.allowed;
@@ -192,7 +201,7 @@ void Search::screen_one(std::size_t k, std::size_t base, std::vector<double>& ch
     const bool little = lean_safety * record.change <= share_of_omissions * allowed();
     const bool dearer = 5 * rung(trial).linear_solves > 6 * rung(base).linear_solves;
     if (!rung(trial).answer)
-      record.why = "not solved: " + rung(trial).status;
+      record.why = rung(trial).status + ": " + rung(trial).message;
     else if (!little)
       record.why = "it changes the answer";
     else if (dearer)
@@ -339,7 +348,12 @@ void Search::summarise() {
     if (std::isfinite(error)) rung(k).estimated = error;
     if (!costliest || rung(k).seconds > rung(*costliest).seconds) costliest = k;
   }
-  if (costliest) outcome_.predicted_full_seconds = rung(*costliest).seconds * saving(rung(*costliest).levels);
+  if (costliest) {
+    outcome_.predicted_full_seconds = rung(*costliest).seconds;
+    for (std::size_t k = 0; k < levels_.size(); ++k)
+      if (refines(k))
+        outcome_.predicted_full_seconds *= std::pow(ladder_.simplifications[k].cost_ratio, rung(*costliest).levels[k]);
+  }
   if (outcome_.full) outcome_.predicted_full_seconds = rung(*outcome_.full).seconds;
 }
 
