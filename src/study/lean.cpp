@@ -204,7 +204,7 @@ LeanStudy check_lean(const LeanOptions& options) {
                           .change = rung.answer ? distance(*rung.answer, *outcome.rungs[0].answer)
                                                 : std::numeric_limits<double>::infinity(),
                           .left_out = false,
-                          .why = rung.answer ? "" : "not solved: " + rung.status};
+                          .why = rung.answer ? "" : rung.status + ": " + rung.message};
       rung.verified = trial.change;
       trial.left_out = trial.change <= outcome.allowed;
       outcome.omissions.push_back(trial);

@@ -147,7 +147,7 @@ void add_modes(const Json& document, LeanLadder& ladder) {
     };
     const int own = body["modal"]["modes"];
     for (int level = 0; level == 0 || halved(own, level) < halved(own, level - 1); ++level)
-      modes.levels.push_back(fmt::format("{} modes", halved(own, level)));
+      modes.levels.push_back(fmt::format("{} mode{}", halved(own, level), halved(own, level) == 1 ? "" : "s"));
     if (modes.levels.size() > 1) ladder.simplifications.push_back(std::move(modes));
   }
 }

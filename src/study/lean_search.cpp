@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace taut {
 namespace {
@@ -46,6 +47,9 @@ class Search {
   Levels above(const Levels& levels) const;
   Levels with(std::size_t k, int level) const;
   double estimate(const Levels& levels) const;
+  Levels omissions_in(const Levels& levels) const;
+  double omitted(const Levels& levels) const;
+  int coarseness(const Levels& levels) const;
   double saving(const Levels& levels) const;
   void learn_costs(const LeanRung& now);
   bool is_futile();
@@ -67,9 +71,9 @@ class Search {
   const LeanRunner& runner_;
   std::vector<Convergence> convergence_;  // of each simplification that refines
   std::vector<double> cost_ratio_;
-  Levels levels_;         // where the search is
-  double omitted_ = 0;    // change of the answer by what is left out
-  double pessimism_ = 1;  // how far measured differences have exceeded estimates
+  Levels levels_;                     // where the search is
+  std::map<Levels, double> changes_;  // of the answer, by what is left out
+  double pessimism_ = 1;              // how far measured differences have exceeded estimates
   LeanOutcome outcome_;
 };
 
@@ -91,11 +95,19 @@ double Search::between(std::size_t a, std::size_t b) {
   return first && second ? distance(*first, *second) : infinity;
 }
 
+/// The sum of the levels of all refinements.
+int Search::coarseness(const Levels& levels) const {
+  int sum = 0;
+  for (std::size_t k = 0; k < levels.size(); ++k)
+    if (refines(k)) sum += levels[k];
+  return sum;
+}
+
 /// By the magnitude of the finest answer so far.
 double Search::allowed() {
   const LeanRung* finest = nullptr;
   for (const LeanRung& one : outcome_.rungs)
-    if (one.answer && (!finest || saving(one.levels) < saving(finest->levels))) finest = &one;
+    if (one.answer && (!finest || coarseness(one.levels) < coarseness(finest->levels))) finest = &one;
   outcome_.magnitude = finest ? finest->answer->magnitude : 0;
   outcome_.allowed = tolerance_.allowed(outcome_.magnitude);
   return outcome_.allowed;
@@ -114,13 +126,26 @@ Levels Search::with(std::size_t k, int level) const {
 }
 
 double Search::estimate(const Levels& levels) const {
-  double sum = 0;
-  bool omits = false;
-  for (std::size_t k = 0; k < levels.size(); ++k) {
+  double sum = omitted(levels);
+  for (std::size_t k = 0; k < levels.size(); ++k)
     if (refines(k)) sum += convergence_[k].error(levels[k]);
-    omits = omits || (!refines(k) && levels[k] > 0);
-  }
-  return pessimism_ * (sum + (omits ? omitted_ : 0));
+  return pessimism_ * sum;
+}
+
+/// What a model leaves out, without its refinements.
+Levels Search::omissions_in(const Levels& levels) const {
+  Levels part = levels;
+  for (std::size_t k = 0; k < part.size(); ++k)
+    if (refines(k)) part[k] = 0;
+  return part;
+}
+
+/// Change of the answer by what a model leaves out, where it was screened.
+double Search::omitted(const Levels& levels) const {
+  const Levels part = omissions_in(levels);
+  if (is_full(part)) return 0;
+  const auto found = changes_.find(part);
+  return found == changes_.end() ? infinity : found->second;
 }
 
 /// How many times cheaper than the full scene a model should be, omissions aside.
@@ -189,10 +214,11 @@ void Search::screen_one(std::size_t k, std::size_t base, std::vector<double>& ch
                          .change = between(base, trial),
                          .left_out = false,
                          .why = ""};
+    changes_[omissions_in(rung(trial).levels)] = record.change;
     const bool little = lean_safety * record.change <= share_of_omissions * allowed();
     const bool dearer = 5 * rung(trial).linear_solves > 6 * rung(base).linear_solves;
     if (!rung(trial).answer)
-      record.why = "not solved: " + rung(trial).status;
+      record.why = rung(trial).status + ": " + rung(trial).message;
     else if (!little)
       record.why = "it changes the answer";
     else if (dearer)
@@ -210,8 +236,8 @@ void Search::screen_one(std::size_t k, std::size_t base, std::vector<double>& ch
 void Search::accept_together(std::size_t base, std::vector<double>& changes) {
   while (true) {
     const std::size_t together = run(levels_);
-    omitted_ = between(base, together);
-    if (lean_safety * omitted_ <= share_of_omissions * allowed()) return;
+    if (together != base) changes_[omissions_in(levels_)] = between(base, together);
+    if (lean_safety * omitted(levels_) <= share_of_omissions * allowed()) return;
     const auto most = std::max_element(changes.begin(), changes.end());
     if (*most < 0) return;
     const auto k = static_cast<std::size_t>(most - changes.begin());
@@ -257,10 +283,10 @@ std::optional<std::size_t> Search::next_refinement() {
 /// that would be cheaper than the full scene.
 bool Search::refine() {
   const std::optional<std::size_t> next = next_refinement();
-  if (omitted_ > 0 && (!next || omitted_ > convergence_[*next].error(levels_[*next]))) {
+  const double left_out = omitted(levels_);
+  if (left_out > 0 && (!next || left_out > convergence_[*next].error(levels_[*next]))) {
     for (std::size_t k = 0; k < levels_.size(); ++k)
       if (!refines(k)) levels_[k] = 0;
-    omitted_ = 0;
     return true;
   }
   if (!next) return false;
@@ -292,7 +318,6 @@ bool Search::verify() {
   }
   if (std::isfinite(difference) && expected > 0) pessimism_ *= std::max(1.0, difference / expected);
   levels_ = finer;
-  omitted_ = 0;
   return false;
 }
 
@@ -339,7 +364,12 @@ void Search::summarise() {
     if (std::isfinite(error)) rung(k).estimated = error;
     if (!costliest || rung(k).seconds > rung(*costliest).seconds) costliest = k;
   }
-  if (costliest) outcome_.predicted_full_seconds = rung(*costliest).seconds * saving(rung(*costliest).levels);
+  if (costliest) {
+    outcome_.predicted_full_seconds = rung(*costliest).seconds;
+    for (std::size_t k = 0; k < levels_.size(); ++k)
+      if (refines(k))
+        outcome_.predicted_full_seconds *= std::pow(ladder_.simplifications[k].cost_ratio, rung(*costliest).levels[k]);
+  }
   if (outcome_.full) outcome_.predicted_full_seconds = rung(*outcome_.full).seconds;
 }
 
