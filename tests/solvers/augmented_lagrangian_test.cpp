@@ -59,7 +59,7 @@ std::vector<Result> march(Cloth& cloth, AugmentedLagrangian& solver, int steps) 
     results.push_back(solver.solve(cloth.owned.problem, warm, {}));
     v = (results.back().x - x) / step;
     x = results.back().x;
-    warm = {results.back().multipliers, results.back().penalties};
+    warm = {results.back().multipliers, results.back().penalties, 0, {}};
   }
   return results;
 }

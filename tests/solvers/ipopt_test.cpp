@@ -72,8 +72,8 @@ TEST_P(IpoptAgrees, WithTheAugmentedLagrangianOnEveryStepFromTheSameStates) {
     EXPECT_NEAR(objective(problem, result.x), f, 1e-8 * std::max(std::abs(f), std::abs(start - f))) << step;
     EXPECT_LE((result.x - other.x).lpNorm<Eigen::Infinity>(), 1e-6) << step;
     largest = std::max(largest, result.multipliers[0].lpNorm<Eigen::Infinity>());
-    warm = {other.multipliers, other.penalties};
-    ipopt_warm = {result.multipliers, {}};
+    warm = {other.multipliers, other.penalties, 0, {}};
+    ipopt_warm = {result.multipliers, {}, 0, {}};
     cloth.accept(other.x);
   }
   EXPECT_GT(largest, 1e-3) << "the constraint never acted";

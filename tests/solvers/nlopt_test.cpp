@@ -32,7 +32,7 @@ TEST_P(NloptAgrees, WithTheAugmentedLagrangianOnEveryStepFromTheSameStates) {
     ASSERT_EQ(result.status, Status::solved) << step << ": " << result.message;
     EXPECT_LE((result.x - other.x).lpNorm<Eigen::Infinity>(), 1e-5) << step;
     largest = std::max(largest, result.multipliers[0].lpNorm<Eigen::Infinity>());
-    warm = {other.multipliers, other.penalties};
+    warm = {other.multipliers, other.penalties, 0, {}};
     cloth.accept(other.x);
   }
   EXPECT_GT(largest, 1e-3) << "the constraint never acted";
@@ -118,7 +118,7 @@ TEST(Nlopt, ItsClaimOfSuccessIsNotPassedOn) {
       if (!solved && result.message.find("REACHED, the residuals do not agree") != std::string::npos) ++false_successes;
     }
     const Result other = augmented_lagrangian.solve(cloth.owned.problem, warm, {});
-    warm = {other.multipliers, other.penalties};
+    warm = {other.multipliers, other.penalties, 0, {}};
     cloth.accept(other.x);
   }
   EXPECT_GT(false_successes, 0);
