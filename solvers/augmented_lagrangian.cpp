@@ -94,7 +94,7 @@ Status AugmentedLagrangian::Run::inner(NewtonState& state) {
         // shells would be asked for a balance below their round-off.
         if (!constrained() && ++seen % 8 == 0) {
           result.x = now.x;
-          work.equalities.put(now.multipliers, 0, result.multipliers);
+          work.equalities.put(now.multipliers, work.slacks.size(), result.multipliers);
           judged = residuals(problem, result);
           smallest = 0.5 * options.tolerances.stationarity * judged.force_scale;
         }

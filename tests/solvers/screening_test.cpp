@@ -1,6 +1,8 @@
 // Constraints that are left out of a solve because nothing seemed able to reach them.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "constraints/convex_sets.h"
 #include "solvers/augmented_lagrangian.h"
 #include "support/problems.h"
@@ -8,20 +10,22 @@
 namespace taut {
 namespace {
 
-/// (x - target)^2/2.
+/// |x - target|^n/n, n even.
 class Pull final : public Energy {
  public:
-  explicit Pull(double target) : target_(target) { stencils_.add(std::array{0}); }
+  Pull(double target, int power) : target_(target), power_(power) { stencils_.add(std::array{0}); }
   std::string name() const override { return "pull"; }
   const Stencils& stencils() const override { return stencils_; }
   double evaluate(Index, const double* x, double* gradient, double* hessian, Curvature) const override {
-    if (gradient) *gradient = *x - target_;
-    if (hessian) *hessian = 1;
-    return 0.5 * (*x - target_) * (*x - target_);
+    const double away = *x - target_;
+    if (gradient) *gradient = std::pow(away, power_ - 1);
+    if (hessian) *hessian = (power_ - 1) * std::pow(away, power_ - 2);
+    return std::pow(away, power_) / power_;
   }
 
  private:
   double target_;
+  int power_;
   Stencils stencils_{1};
 };
 
@@ -47,11 +51,11 @@ class Wall final : public Constraint {
 };
 
 /// Pulls x from 0 to the target, with what a step before knows about the wall.
-Result pulled(double target, double last_change, double last_multiplier = 0, double screening = 4) {
+Result pulled(double target, double last_change, double last_multiplier = 0, double screening = 4, int power = 2) {
   OwnedProblem owned;
   owned.problem.initial_guess = Vector::Zero(1);
   owned.problem.node_size = 1;
-  owned.add(std::make_shared<Pull>(target));
+  owned.add(std::make_shared<Pull>(target, power));
   owned.add(std::make_shared<Wall>());
   AugmentedLagrangianOptions options;
   options.screening = screening;
@@ -69,6 +73,15 @@ TEST(Screening, LeavesOutWhatIsFartherThanFourChanges) {
   EXPECT_EQ(result.counts.linear_solves, 1) << "a quadratic without constraints";
   EXPECT_DOUBLE_EQ(result.x[0], 0.5);
   EXPECT_DOUBLE_EQ(result.changes.at(0), 0.5);
+}
+
+TEST(Screening, HoldsWhereTheStepTakesManyIterations) {
+  const Result result = pulled(0.5, 0.2, 0, 4, 6);
+  EXPECT_EQ(result.status, Status::solved) << result.message;
+  EXPECT_EQ(result.counts.screened, 1);
+  EXPECT_GT(result.counts.linear_solves, 8) << "the residuals are looked at every eight";
+  ASSERT_EQ(result.multipliers.size(), 1u);
+  EXPECT_EQ(result.multipliers[0], Vector::Zero(1));
 }
 
 TEST(Screening, KeepsWhatIsNearerOrActiveAndEverythingWhereItIsOff) {
