@@ -50,12 +50,12 @@ class Wall final : public Constraint {
   Box set_{1, -std::numeric_limits<double>::infinity(), 1};
 };
 
-/// Pulls x from 0 to the target, with what a step before knows about the wall.
-Result pulled(double target, double last_change, double last_multiplier = 0, double screening = 4, int power = 2) {
+/// A step from x = 0 with these energies behind the wall, and what the step before knows about it.
+Result solved(const std::vector<Pull>& pulls, double last_change, double last_multiplier = 0, double screening = 4) {
   OwnedProblem owned;
   owned.problem.initial_guess = Vector::Zero(1);
   owned.problem.node_size = 1;
-  owned.add(std::make_shared<Pull>(target, power));
+  for (const Pull& pull : pulls) owned.add(std::make_shared<Pull>(pull));
   owned.add(std::make_shared<Wall>());
   AugmentedLagrangianOptions options;
   options.screening = screening;
@@ -63,6 +63,10 @@ Result pulled(double target, double last_change, double last_multiplier = 0, dou
   warm.multipliers = {Vector::Constant(1, last_multiplier)};
   warm.changes = {last_change};
   return AugmentedLagrangian(options).solve(owned.problem, warm, {});
+}
+
+Result pulled(double target, double last_change, double last_multiplier = 0, double screening = 4) {
+  return solved({Pull(target, 2)}, last_change, last_multiplier, screening);
 }
 
 TEST(Screening, LeavesOutWhatIsFartherThanFourChanges) {
@@ -76,9 +80,10 @@ TEST(Screening, LeavesOutWhatIsFartherThanFourChanges) {
 }
 
 TEST(Screening, HoldsWhereTheStepTakesManyIterations) {
-  const Result result = pulled(0.5, 0.2, 0, 4, 6);
+  const Result result = solved({Pull(1, 20), Pull(0, 20)}, 0.2);
   EXPECT_EQ(result.status, Status::solved) << result.message;
   EXPECT_EQ(result.counts.screened, 1);
+  EXPECT_NEAR(result.x[0], 0.5, 1e-6);
   EXPECT_GT(result.counts.linear_solves, 8) << "the residuals are looked at every eight";
   ASSERT_EQ(result.multipliers.size(), 1u);
   EXPECT_EQ(result.multipliers[0], Vector::Zero(1));
