@@ -98,6 +98,7 @@ int solve(const SolveArguments& arguments) {
   options.export_file = arguments.exported.second;
   options.stop = &stop_requested;
   options.version = TAUT_VERSION;
+  int last_step = 0;  // begun and judged
   if (!arguments.quiet) {
     options.on_start = [&](int done) {
       progress = std::make_unique<Progress>(scene.name, scene.time.steps, stderr, done);
@@ -108,10 +109,15 @@ int solve(const SolveArguments& arguments) {
         fmt::print(stderr, "step {}: {}: {}\n", record.step, to_string(record.status), record.message);
       }
       progress->update(record.step, progress_note(record));
+      last_step = record.step;
     };
   }
   const RunSummary summary = run(scene, options);
   if (progress) progress->finish();
+  if (const auto& [step, file] = arguments.exported; step > 0 && !arguments.quiet) {
+    const char* what = last_step >= step ? "its model is in" : "not reached, and so there is no model in";
+    fmt::print(stderr, "step {}: {} {}\n", step, what, file);
+  }
 
   const std::string text = arguments.json    ? summary_text(summary)
                            : arguments.quiet ? ""
