@@ -54,7 +54,8 @@ TEST_F(SuiteCommand, AProcessOutOfMemoryIsRecordedAndEndsNothingElse) {
   const Outcome outcome = taut({"compare", "--suite", suite(), "--solvers", "augmented_lagrangian,nlopt",
                                 "--memory-limit", "1", "--json", "--quiet"});
   EXPECT_EQ(outcome.code, 0) << outcome.error;
-  for (const Json& entry : Json::parse(outcome.out)["entries"]) {
+  const Json result = Json::parse(outcome.out);
+  for (const Json& entry : result["entries"]) {
     for (const Json& run : entry["runs"]) EXPECT_EQ(run["outcome"], "out_of_memory");
   }
 }
