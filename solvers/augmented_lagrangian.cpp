@@ -160,6 +160,7 @@ void AugmentedLagrangian::Run::loop() {
   best_judged.finite = false;
   double first_violation = -1;
   int stalls = 0, without_progress = 0, failures = 0;
+  double near = 1e-3;  // the residuals at which the central path is tried again
 
   const auto finish = [&](Status status, std::string message) {
     if (status != Status::solved && status != Status::infeasible &&
@@ -201,6 +202,11 @@ void AugmentedLagrangian::Run::loop() {
       best_judged = judged;
     }
     if (judged.within(options.tolerances)) return finish(Status::solved, "residuals within tolerance");
+    // The path that was lost far away may be found from here.
+    if (judged.within({near, near, near})) {
+      near *= 1e-2;
+      if (central_path()) return finish(Status::solved, "residuals within tolerance, along the central path");
+    }
     if (inner_status == Status::interrupted) return finish(inner_status, "stopped on request");
     if (inner_status == Status::time_limit) return finish(inner_status, "out of time");
     if (result.counts.outer >= options.max_outer || result.counts.linear_solves >= options.max_newton) {

@@ -37,7 +37,7 @@ struct AugmentedLagrangian::Run {
   std::vector<double> start_penalty;
   std::vector<double> last_violation;
   Vector scratch;
-  Index left_out = 0;  // slacks
+  Index left_out = 0;  // elements of constraints
 
   Run(const AugmentedLagrangianOptions& o, const Problem& p, const Budget& b,
       const std::function<void(const Iterate&)>& f, Workspace& w)
@@ -52,7 +52,7 @@ struct AugmentedLagrangian::Run {
   void start(const WarmStart& warm);
   void leave_out(const WarmStart& warm);
   bool left_out_violated() const;
-  bool constrained() const { return left_out < static_cast<Index>(work.slacks.size()); }
+  bool constrained() const;
   void show(const Vector& x, const Vector& equal) const;
   Status inner(NewtonState& state);
   bool diverges(const Vector& x) const;

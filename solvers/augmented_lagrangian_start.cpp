@@ -82,7 +82,7 @@ void AugmentedLagrangian::Run::start(const WarmStart& warm) {
   std::optional<std::vector<Stiffness>> diagonals;
   for (std::size_t k = 0; k < work.slacks.size(); ++k) {
     EliminatedSlack& slack = work.slacks[k];
-    slack.set_left_out(false);
+    slack.take_all_in();
     const Index rows = slack.multipliers().size();
     slack.set_multipliers(options.warm_multipliers && k < warm.multipliers.size() ? warm.multipliers[k]
                                                                                   : Vector(Vector::Zero(rows)));
@@ -109,17 +109,20 @@ void AugmentedLagrangian::Run::start(const WarmStart& warm) {
   }
 }
 
-/// Tries the central path from the warm start; on success `result` and `judged` hold the solution, else the warm start
-/// is restored.
+/// Tries the central path from `result`; on success `result` and `judged` hold the solution, else they are restored.
 bool AugmentedLagrangian::Run::central_path() {
-  if (!options.central_path.enabled || options.null_space || !constrained()) return false;
+  if (!options.central_path.enabled || !constrained()) return false;
   const Result start = result;
   const Residuals start_judged = judged;
-  for (EliminatedSlack& slack : work.slacks) slack.set_penalty(options.central_path.penalty_fraction * slack.penalty());
+  std::vector<double> penalties;
+  for (std::size_t k = 0; k < work.slacks.size(); ++k) {
+    penalties.push_back(work.slacks[k].penalty());
+    work.slacks[k].set_penalty(options.central_path.penalty_fraction * start_penalty[k]);
+  }
   Vector x = result.x, equal = work.equalities.stacked(result.multipliers, work.slacks.size());
   const bool solved = follow_central_path(
-      work.assembly, *work.system, work.equalities, work.slacks, problem.node_size, judged.force_scale,
-      options.tolerances, options.central_path, options.threads, x, equal,
+      work.assembly, *work.system, work.equalities, work.slacks, problem.fixed_variables, problem.node_size,
+      judged.force_scale, options.tolerances, options.central_path, options.threads, x, equal,
       [&](const Vector& candidate) {
         result.x = candidate;
         const Judge judge(problem, result.x);
@@ -137,7 +140,7 @@ bool AugmentedLagrangian::Run::central_path() {
       },
       observer ? [&](const Vector& now) { show(now, equal); } : std::function<void(const Vector&)>(), budget,
       result.counts, result.timings);
-  for (std::size_t k = 0; k < work.slacks.size(); ++k) work.slacks[k].set_penalty(start_penalty[k]);
+  for (std::size_t k = 0; k < work.slacks.size(); ++k) work.slacks[k].set_penalty(penalties[k]);
   if (solved) return true;
   result.x = start.x;
   result.multipliers = start.multipliers;

@@ -17,12 +17,13 @@ using Linearisation = EliminatedSlack::Linearisation;
 class CentralPath {
  public:
   CentralPath(Assembly& assembly, NewtonSystem& system, const EqualityRows& equalities,
-              std::deque<EliminatedSlack>& slacks, int node_size, double force_scale, const CentralPathOptions& options,
-              int threads, Vector& equal, Counts& counts, Timings& timings)
+              std::deque<EliminatedSlack>& slacks, const std::vector<int>& fixed, int node_size, double force_scale,
+              const CentralPathOptions& options, int threads, Vector& equal, Counts& counts, Timings& timings)
       : assembly_(assembly),
         system_(system),
         equalities_(equalities),
         slacks_(slacks),
+        fixed_(fixed),
         node_size_(node_size),
         force_scale_(force_scale),
         options_(options),
@@ -55,13 +56,10 @@ class CentralPath {
 
   /// Solves for the step in x, multipliers and width; false where the matrix is not positive definite.
   bool step(const Vector& x) {
+    ++steps_;
     start_width_ = target_width_ = width_;
     if (centred()) target_width_ = std::max(std::sqrt(options_.reduction) * width_, options_.smallest_width);
-    if (!matrix_is_here_) {
-      const Stopwatch watch(timings_.assembly);
-      assembly_.hessian(x, Curvature::positive_semidefinite, &gradient_);
-      matrix_is_here_ = true;
-    }
+    if (!matrix_is_here_) make_matrix(x);
     right_hand_side_ = gradient_;
     {
       const Stopwatch watch(timings_.assembly);
@@ -70,10 +68,12 @@ class CentralPath {
         slack.aim(scaled * scaled, threads_, right_hand_side_);
       }
     }
-    {
-      const Stopwatch watch(timings_.factorization);
-      ++counts_.factorizations;
-      if (!system_.factorize(0)) return false;
+    if (!factorize()) {
+      if (curvature_ != Curvature::exact) return false;
+      wait_ = patience_;
+      patience_ = std::min(2 * patience_, 64);
+      make_matrix(x);
+      if (!factorize()) return false;
     }
     {
       const Stopwatch watch(timings_.solve);
@@ -125,6 +125,21 @@ class CentralPath {
   }
 
  private:
+  bool factorize() {
+    const Stopwatch watch(timings_.factorization);
+    ++counts_.factorizations;
+    return system_.factorize(0);
+  }
+
+  /// The semidefinite matrix, or late on the path the exact one, where it was not indefinite lately.
+  void make_matrix(const Vector& x) {
+    const Stopwatch watch(timings_.assembly);
+    const bool exact = steps_ >= options_.exact_after && --wait_ < 0;
+    curvature_ = exact ? Curvature::exact : Curvature::positive_semidefinite;
+    assembly_.hessian(x, curvature_, &gradient_);
+    matrix_is_here_ = true;
+  }
+
   bool centred() const { return worst_mismatch_ <= options_.centred * width_; }
 
   /// Positions, multipliers and epsilon at a fraction of the step, and the mismatch there.
@@ -143,19 +158,19 @@ class CentralPath {
   /// Gradients and sum of w J^T lambda at the point set, into the merit; with the matrix of the Newton step from here
   /// where that is wanted.
   void measure_forces(const Vector& x, bool with_matrix) {
-    const Stopwatch watch(timings_.assembly);
+    matrix_is_here_ = false;
     if (with_matrix) {
-      assembly_.hessian(x, Curvature::positive_semidefinite, &gradient_);
+      make_matrix(x);
     } else {
+      const Stopwatch watch(timings_.assembly);
       assembly_.gradient(x, gradient_);
     }
-    matrix_is_here_ = with_matrix;
     equalities_.violation(x, violation_);
     if (equalities_.count() > 0) {
       equalities_.add_force(equal_, gradient_);
-      assembly_.clear_fixed(gradient_);
       merit_ += violation_.squaredNorm() / x.squaredNorm();
     }
+    for (int variable : fixed_) gradient_[variable] = 0;
     force_ = nodal_max_norm(gradient_, node_size_);
     merit_ += gradient_.squaredNorm() / (force_scale_ * force_scale_);
   }
@@ -175,6 +190,7 @@ class CentralPath {
   NewtonSystem& system_;
   const EqualityRows& equalities_;
   std::deque<EliminatedSlack>& slacks_;
+  const std::vector<int>& fixed_;
   int node_size_;
   double force_scale_;
   const CentralPathOptions& options_;
@@ -187,6 +203,8 @@ class CentralPath {
   double width_ = 0, start_width_ = 0, target_width_ = 0;
   double force_ = 0, worst_mismatch_ = 0, merit_ = 0;
   bool matrix_is_here_ = false;
+  Curvature curvature_ = Curvature::positive_semidefinite;
+  int steps_ = 0, wait_ = 0, patience_ = 1;
   Vector gradient_, right_hand_side_, step_, trial_;
   std::vector<Vector> multiplier_steps_, start_multipliers_;
 };
@@ -202,16 +220,17 @@ void CentralPathOptions::validate() const {
   require(centred > 0, "centred must be positive");
   require(tolerated_rise >= 1, "tolerated_rise must be at least 1");
   require(smallest_width > 0, "smallest_width must be positive");
+  require(exact_after >= 0, "exact_after must not be negative");
   require(max_iterations >= 1 && max_halvings >= 1, "max_iterations and max_halvings must be at least 1");
 }
 
 bool follow_central_path(Assembly& assembly, NewtonSystem& system, const EqualityRows& equalities,
-                         std::deque<EliminatedSlack>& slacks, int node_size, double force_scale,
-                         const Tolerances& tolerances, const CentralPathOptions& options, int threads, Vector& x,
-                         Vector& equal, const std::function<double(const Vector&)>& judge,
+                         std::deque<EliminatedSlack>& slacks, const std::vector<int>& fixed, int node_size,
+                         double force_scale, const Tolerances& tolerances, const CentralPathOptions& options,
+                         int threads, Vector& x, Vector& equal, const std::function<double(const Vector&)>& judge,
                          const std::function<void(const Vector&)>& observe, const Budget& budget, Counts& counts,
                          Timings& timings) {
-  CentralPath path(assembly, system, equalities, slacks, node_size, force_scale, options, threads, equal, counts,
+  CentralPath path(assembly, system, equalities, slacks, fixed, node_size, force_scale, options, threads, equal, counts,
                    timings);
   path.start(x);
   bool accepted = false;

@@ -19,7 +19,9 @@ using RowsByRows = std::array<double, max_rows * max_rows>;
 }  // namespace
 
 EliminatedSlack::EliminatedSlack(const Constraint& constraint)
-    : constraint_(constraint), multipliers_(Vector::Zero(constraint.stencils().count() * constraint.rows())) {}
+    : constraint_(constraint),
+      multipliers_(Vector::Zero(constraint.stencils().count() * constraint.rows())),
+      left_out_(static_cast<std::size_t>(constraint.stencils().count()), 0) {}
 
 void EliminatedSlack::set_multipliers(const Vector& multipliers) {
   if (multipliers.size() != multipliers_.size()) {
@@ -29,15 +31,35 @@ void EliminatedSlack::set_multipliers(const Vector& multipliers) {
   multipliers_ = multipliers;
 }
 
-bool EliminatedSlack::is_far_inside(const Vector& x, double radius) const {
+Index EliminatedSlack::leave_out(const Vector& x, double radius) {
+  const int rows = constraint_.rows();
   Scratch<max_stencil_width> local(stencils().width());
   Rows c;
+  take_all_in();
   for (Index element = 0; element < stencils().count(); ++element) {
+    if (!multipliers_.segment(element * rows, rows).isZero(0)) continue;
     stencils().gather(element, x, local.data());
     constraint_.evaluate(element, local.data(), c.data(), nullptr);
-    if (!constraint_.set().contains_ball(element, c.data(), radius)) return false;
+    if (!constraint_.set().contains_ball(element, c.data(), radius)) continue;
+    left_out_[static_cast<std::size_t>(element)] = 1;
+    ++left_out_count_;
   }
-  return true;
+  return left_out_count_;
+}
+
+void EliminatedSlack::take_all_in() {
+  std::fill(left_out_.begin(), left_out_.end(), 0);
+  left_out_count_ = 0;
+}
+
+bool EliminatedSlack::left_out_violated(const Vector& x) const {
+  Scratch<max_stencil_width> local(stencils().width());
+  for (Index element = 0; left_out_count_ > 0 && element < stencils().count(); ++element) {
+    if (!left_out(element)) continue;
+    stencils().gather(element, x, local.data());
+    if (!(constraint_.violation(element, local.data()) <= 0)) return true;
+  }
+  return false;
 }
 
 double EliminatedSlack::largest_change(const Vector& from, const Vector& to) const {
@@ -57,14 +79,9 @@ double EliminatedSlack::largest_change(const Vector& from, const Vector& to) con
   return std::sqrt(largest);
 }
 
-void EliminatedSlack::set_left_out(bool left_out) {
-  left_out_ = left_out;
-  if (left_out) multipliers_.setZero();
-}
-
 double EliminatedSlack::evaluate(Index element, const double* x, double* gradient, double* hessian,
                                  Curvature curvature) const {
-  if (left_out_) {
+  if (left_out(element)) {
     if (gradient) std::fill_n(gradient, stencils().width(), 0.0);
     if (hessian) std::fill_n(hessian, stencils().width() * stencils().width(), 0.0);
     return 0;
@@ -199,7 +216,6 @@ struct EliminatedSlack::Path {
 };
 
 EliminatedSlack::Mismatch EliminatedSlack::set_point(const Vector& x, double epsilon, int threads) {
-  if (left_out_) return {};
   const int rows = constraint_.rows();
   if (!path_) path_ = std::make_unique<Path>(rows, stencils().width(), stencils().count());
   Path& path = *path_;
@@ -208,6 +224,7 @@ EliminatedSlack::Mismatch EliminatedSlack::set_point(const Vector& x, double eps
     Scratch<max_stencil_width> local(stencils().width());
     Rows c, y, nearest;
     for (Index element = first; element < last; ++element) {
+      if (left_out(element)) continue;
       stencils().gather(element, x, local.data());
       constraint_.evaluate(element, local.data(), c.data(), path.jacobian.col(element).data());
       const double* lambda = multipliers_.data() + element * rows;
@@ -226,6 +243,7 @@ EliminatedSlack::Mismatch EliminatedSlack::set_point(const Vector& x, double eps
   Mismatch out;
   double weights = 0;
   for (Index element = 0; element < path.square.size(); ++element) {
+    if (left_out(element)) continue;
     if (!(path.square[element] <= out.max)) out.max = path.square[element];
     out.mean_square += constraint_.weight(element) * path.square[element];
     weights += constraint_.weight(element);
@@ -236,16 +254,17 @@ EliminatedSlack::Mismatch EliminatedSlack::set_point(const Vector& x, double eps
 }
 
 void EliminatedSlack::aim(double target_epsilon, int threads, Vector& gradient) {
-  if (left_out_) return;
   Path& path = *path_;
   const double change = penalty_ * (target_epsilon - path.epsilon);
   path.for_ranges(threads, [&](Index first, Index last) {
     for (Index element = first; element < last; ++element) {
+      if (left_out(element)) continue;
       path.is_triangle() ? path.aim<3>(element, change) : path.aim<-1>(element, change);
     }
   });
   Scratch<max_stencil_width> force(path.width);
   for (Index element = 0; element < path.square.size(); ++element) {
+    if (left_out(element)) continue;
     path_gradient(element, path.correction.col(element).data(), force.data());
     const int* variables = stencils()[element];
     for (int k = 0; k < path.width; ++k) gradient[variables[k]] -= force[k];
@@ -274,17 +293,17 @@ double EliminatedSlack::evaluate_path(Index element, const double* x, double* gr
 }
 
 void EliminatedSlack::multiplier_step(const Vector& dx, int threads, Vector& step) const {
-  if (left_out_) {
-    step.setZero(multipliers_.size());
-    return;
-  }
   const Path& path = *path_;
   step.resize(multipliers_.size());
   path.for_ranges(threads, [&](Index first, Index last) {
     Scratch<max_stencil_width> moved(path.width);
     for (Index element = first; element < last; ++element) {
-      stencils().gather(element, dx, moved.data());
       double* out = step.data() + element * path.rows;
+      if (left_out(element)) {
+        std::fill_n(out, path.rows, 0.0);
+        continue;
+      }
+      stencils().gather(element, dx, moved.data());
       path.is_triangle() ? path.multiplier_step<3, 9>(element, penalty_, moved.data(), out)
                          : path.multiplier_step<-1, -1>(element, penalty_, moved.data(), out);
     }
@@ -295,14 +314,11 @@ EliminatedSlack::~EliminatedSlack() = default;
 
 void EliminatedSlack::updated_multipliers(const Vector& x, double cap, Vector& updated) const {
   const int rows = constraint_.rows();
-  if (left_out_) {
-    updated.setZero(multipliers_.size());
-    return;
-  }
-  updated.resize(multipliers_.size());
+  updated.setZero(multipliers_.size());
   Scratch<max_stencil_width> local(stencils().width());
   Rows c, y, nearest;
   for (Index element = 0; element < stencils().count(); ++element) {
+    if (left_out(element)) continue;
     stencils().gather(element, x, local.data());
     constraint_.evaluate(element, local.data(), c.data(), nullptr);
     for (int i = 0; i < rows; ++i) y[i] = c[i] + multipliers_[element * rows + i] / penalty_;
@@ -315,12 +331,12 @@ void EliminatedSlack::updated_multipliers(const Vector& x, double cap, Vector& u
 }
 
 void EliminatedSlack::add_update_force(const Vector& x, Vector& force) const {
-  if (left_out_) return;
   const int rows = constraint_.rows(), width = stencils().width();
   Scratch<max_stencil_width> local(width);
   Rows c, y, nearest;
   RowsByWidth jacobian(rows * width);
   for (Index element = 0; element < stencils().count(); ++element) {
+    if (left_out(element)) continue;
     stencils().gather(element, x, local.data());
     const double* lambda = multipliers_.data() + element * rows;
     constraint_.evaluate(element, local.data(), c.data(), jacobian.data());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "core/constraint.h"
 #include "core/energy.h"
@@ -29,13 +30,16 @@ class EliminatedSlack final : public Energy {
   /// Adds w J^T (lambda+ - lambda) at x to `force`: how much the forces would change by an update now.
   void add_update_force(const Vector& x, Vector& force) const;
 
-  /// True where no element of c(x) is within `radius` of its set's boundary, or outside.
-  bool is_far_inside(const Vector& x, double radius) const;
   /// The largest |c(to) - c(from)| of any element; infinite where that is no number.
   double largest_change(const Vector& from, const Vector& to) const;
-  /// Left out, it adds nothing to any sum, and its multipliers stay zero.
-  void set_left_out(bool left_out);
-  bool left_out() const { return left_out_; }
+  /// Leaves out the elements whose multipliers are zero and whose c(x) keeps more than `radius` to the boundary of
+  /// their set. They add nothing to any sum, and their multipliers stay zero, until take_all_in(). Returns how many.
+  Index leave_out(const Vector& x, double radius);
+  void take_all_in();
+  /// True where all are.
+  bool is_left_out() const { return left_out_count_ == stencils().count(); }
+  /// True where an element that is left out is violated at x, by however little.
+  bool left_out_violated(const Vector& x) const;
 
   /// What evaluate() gives: the augmented Lagrangian above; or, on the central path (central_path.h) and at the point
   /// last given to set_point(), the gradient w J^T lambda and the matrix that is left of Newton's system for x and
@@ -60,20 +64,22 @@ class EliminatedSlack final : public Energy {
   const Stencils& stencils() const override { return constraint_.stencils(); }
   double evaluate(Index element, const double* x, double* gradient, double* hessian,
                   Curvature curvature) const override;
-  bool guards_steps() const override { return !left_out_ && constraint_.guards_steps(); }
+  bool guards_steps() const override { return !is_left_out() && constraint_.guards_steps(); }
   double largest_step(Index element, const double* x, const double* dx) const override {
     return constraint_.largest_step(element, x, dx);
   }
 
  private:
   struct Path;
+  bool left_out(Index element) const { return left_out_[static_cast<std::size_t>(element)] != 0; }
   void path_gradient(Index element, const double* lambda, double* gradient) const;
   double evaluate_path(Index element, const double* x, double* gradient, double* hessian, Curvature curvature) const;
 
   const Constraint& constraint_;
   Vector multipliers_;
   double penalty_ = 1;
-  bool left_out_ = false;
+  std::vector<char> left_out_;  ///< per element
+  Index left_out_count_ = 0;
   Linearisation linearisation_ = Linearisation::augmented_lagrangian;
   std::unique_ptr<Path> path_;  ///< what set_point() and aim() keep of every element
 };

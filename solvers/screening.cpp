@@ -1,25 +1,26 @@
+#include <algorithm>
+
 #include "solvers/augmented_lagrangian_run.h"
 
 namespace taut {
 
-/// Leaves out the constraints that were inactive, where no element of the initial guess is nearer to its boundary than
+/// Leaves out the elements that were inactive, where the initial guess is nearer to the boundary by no less than
 /// `screening` times the largest change of any element in the last solve. That is a guess, not a bound: solve() looks.
 void AugmentedLagrangian::Run::leave_out(const WarmStart& warm) {
   if (options.screening == 0 || warm.changes.size() != work.slacks.size()) return;
-  for (std::size_t k = 0; k < work.slacks.size(); ++k) {
-    EliminatedSlack& slack = work.slacks[k];
-    if (!slack.multipliers().isZero(0) || !slack.is_far_inside(result.x, options.screening * warm.changes[k])) continue;
-    slack.set_left_out(true);
-    ++left_out;
-  }
+  for (std::size_t k = 0; k < work.slacks.size(); ++k)
+    left_out += work.slacks[k].leave_out(result.x, options.screening * warm.changes[k]);
 }
 
-/// True where `judged` has found a constraint violated that was left out, by however little.
+/// True where the result violates something that was left out, by however little.
 bool AugmentedLagrangian::Run::left_out_violated() const {
-  for (std::size_t k = 0; left_out > 0 && k < work.slacks.size(); ++k) {
-    if (work.slacks[k].left_out() && !(judged.violations[k].max <= 0)) return true;
-  }
-  return false;
+  return left_out > 0 && std::any_of(work.slacks.begin(), work.slacks.end(),
+                                     [&](const EliminatedSlack& slack) { return slack.left_out_violated(result.x); });
+}
+
+bool AugmentedLagrangian::Run::constrained() const {
+  return std::any_of(work.slacks.begin(), work.slacks.end(),
+                     [](const EliminatedSlack& slack) { return !slack.is_left_out(); });
 }
 
 void AugmentedLagrangian::Run::solve(const WarmStart& warm) {
