@@ -41,6 +41,10 @@ LeanOptions options_of(const LeanArguments& arguments) {
     options.on_rung = [](const LeanRung& rung) {
       fmt::print(stderr, "lean: {}: {} in {:.2f} s\n", rung.words, rung.status, rung.seconds);
     };
+    options.on_estimate = [](const ResidualTrial& trial) {
+      fmt::print(stderr, "lean: {}: {} in {:.2f} s\n", trial.words,
+                 trial.answer ? "estimated from a residual" : "no estimate, " + trial.why, trial.seconds);
+    };
   }
   return options;
 }
