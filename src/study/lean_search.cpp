@@ -141,8 +141,10 @@ bool Search::verify() {
     return true;
   }
   const std::size_t lean = runs_.run(levels_), reference = runs_.run(finer);
-  const double difference = runs_.between(lean, reference),
-               expected = errors_.estimate(levels_) - errors_.estimate(finer);
+  const double difference = runs_.between(lean, reference);
+  for (std::size_t k = 0; k < levels_.size(); ++k)  // a run knows better than a residual
+    if (by_residual_[k] && errors_.knows(k, levels_[k])) errors_.raise_difference(k, levels_[k], difference);
+  const double expected = errors_.estimate(levels_) - errors_.estimate(finer);
   runs_[lean].verified = difference + errors_.estimate(finer);
   if (*runs_[lean].verified <= runs_.allowed()) {
     outcome_.end = LeanEnd::verified;

@@ -19,12 +19,12 @@ class ResidualEstimates : public FilesTest {
     return read_scene(std::string(TAUT_CATALOGUE) + "/" + name + ".json", overrides);
   }
   /// A quarter of a clamped plate, 0.01 m thick and 0.5 m wide, under a pressure in N/m2.
-  static Scene plate(int cells, double pressure) {
+  static Scene plate(int cells, double pressure, const std::string& tolerance = "1e-6") {
     const std::string n = std::to_string(cells);
     return scene("validation/plate_clamped_100",
                  {{"bodies.shell.mesh.grid.cells", "[" + n + "," + n + "]"},
                   {"loads.load.force_per_area", "[0,0," + std::to_string(pressure) + "]"},
-                  {"solver.tolerance.stationarity", "1e-10"}});
+                  {"solver.tolerance.stationarity", tolerance}});
   }
   StoredRun solved(const Scene& scene) {
     RunOptions options;
@@ -48,16 +48,16 @@ class ResidualEstimates : public FilesTest {
 };
 
 TEST_F(ResidualEstimates, AreExactWhereTheProblemIsLinear) {
-  const Scene coarse = plate(4, 0.1), finer = plate(8, 0.1);  // w / t = 1e-4
+  const Scene coarse = plate(4, 1), finer = plate(8, 1);  // (w / t)^2, what is not linear, is about 1e-6
   const StoredRun below = solved(coarse), above = solved(finer);
-  for (const char* quantity : {"probe:w", "probe:moment", "displacement", "shape", "tension"}) {
+  for (const char* quantity : {"probe:w", "probe:moment", "displacement", "shape"}) {
     const Observer observer(parse_quantity(quantity), finer);
     const ResidualEstimate found = residual_estimate(below, finer, observer, 1);
     ASSERT_TRUE(found.answer) << quantity << ": " << found.why;
     const Answer truth = observer(above).value();
     const double difference = distance(observer(below).value(), truth);
     EXPECT_GT(difference, 1e-3 * truth.magnitude) << quantity;
-    EXPECT_LT(distance(*found.answer, truth), 1e-6 * difference) << quantity;
+    EXPECT_LT(distance(*found.answer, truth), 1e-5 * difference) << quantity;
     EXPECT_EQ(found.linear_solves, 2);
   }
 }
@@ -75,17 +75,15 @@ TEST_F(ResidualEstimates, LeaveWhatTheContractionSaysWhereItIsNot) {
 }
 
 TEST_F(ResidualEstimates, TellWhatALooseToleranceLeaves) {
-  const auto plate_within = [](const std::string& tolerance) {
-    return scene("validation/plate_clamped_1000",
-                 {{"bodies.shell.mesh.grid.cells", "[8,8]"}, {"solver.tolerance.stationarity", tolerance}});
-  };
-  const Scene loose = plate_within("1e-1"), tight = plate_within("1e-8");
+  const Scene tight = plate(8, 500, "1e-8"), loose = plate(8, 500, "1e-1");
   const StoredRun before = solved(loose), after = solved(tight);
   const Observer observer(parse_quantity("displacement"), tight);
   const ResidualEstimate found = residual_estimate(before, tight, observer, 1);
   ASSERT_TRUE(found.answer) << found.why;
   const Answer truth = observer(after).value();
-  EXPECT_LT(distance(*found.answer, truth), 0.1 * distance(observer(before).value(), truth) + 1e-6 * truth.magnitude);
+  const double left = distance(observer(before).value(), truth);
+  EXPECT_GT(left, 1e-6 * truth.magnitude);
+  EXPECT_LT(distance(*found.answer, truth), 0.1 * left);
 }
 
 TEST_F(ResidualEstimates, AreRefusedFarFromTheFinerAnswer) {
