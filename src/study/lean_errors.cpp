@@ -10,10 +10,6 @@ void LeanErrors::compare(double estimated, double measured) {
   if (std::isfinite(measured) && estimated > 0) pessimism_ *= std::max(1.0, measured / estimated);
 }
 
-void LeanErrors::raise_difference(std::size_t k, int level, double difference) {
-  if (!(convergence_[k].difference(level) >= difference)) convergence_[k].add(level, difference);
-}
-
 double LeanErrors::estimate(const Levels& levels) const {
   double sum = of_omissions(levels);
   for (std::size_t k = 0; k < levels.size(); ++k)

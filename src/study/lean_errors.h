@@ -18,8 +18,8 @@ class LeanErrors {
   /// What one level more of a refinement changes.
   void add_difference(std::size_t k, int level, double difference) { convergence_[k].add(level, difference); }
   bool knows(std::size_t k, int level) const { return convergence_[k].knows(level); }
-  /// The same where it is more than is known.
-  void raise_difference(std::size_t k, int level, double difference);
+  /// The same, 0 where it is not known.
+  double difference(std::size_t k, int level) const { return knows(k, level) ? convergence_[k].difference(level) : 0; }
   /// What the omissions of a model change, whatever its refinements.
   void add_omissions(const Levels& levels, double change) { changes_[omissions_in(levels)] = change; }
   /// A difference that was estimated was measured.

@@ -21,7 +21,7 @@ using Kind = Simplification::Kind;
 constexpr int most_halvings = 4;          // of a mesh
 constexpr int fewest_dynamic_steps = 10;  // of a run in time
 constexpr double loosest_tolerance = 1e-3;
-constexpr double many_solves = 20;  // of a step; scenes of the catalogue take 4 to 16
+constexpr double many_solves = 20;  // of a step; a dozen scenes of the catalogue took 4 to 16
 
 int halved(int number, int times) { return std::max(1, static_cast<int>(std::lround(std::ldexp(number, -times)))); }
 

@@ -44,11 +44,11 @@ class Screening {
   std::vector<double> changes_;  // by what is chosen, each alone
 };
 
-/// Tries an omission, from its simplest form on, and chooses the first that changes little enough.
+/// Tries an omission, from its mildest form on, as long as it changes little enough.
 void Screening::try_alone(std::size_t k) {
   const Simplification& omission = ladder_.simplifications[k];
   const long most = static_cast<long>(patience * static_cast<double>(runs_[base_].linear_solves)) + some_more;
-  for (int level = omission.simplest(); level > 0; --level) {
+  for (int level = 1; level <= omission.simplest(); ++level) {
     Levels levels = bare_;
     levels[k] = level;
     const std::size_t trial = runs_.run(levels, most);
@@ -65,11 +65,14 @@ void Screening::try_alone(std::size_t k) {
     else if (dearer)
       record.why = "it takes more linear solves";
     record.left_out = record.why.empty();
+    if (record.left_out && level > 1) {
+      outcome_.omissions.back().left_out = false;
+      outcome_.omissions.back().why = "a simpler form serves";
+    }
     outcome_.omissions.push_back(record);
-    if (!record.left_out) continue;
+    if (!record.left_out) return;
     changes_[k] = record.change;
     chosen_[k] = level;
-    return;
   }
 }
 

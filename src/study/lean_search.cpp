@@ -36,6 +36,7 @@ class Search {
   void measure(std::size_t k);
   std::optional<std::size_t> next_refinement();
   bool refine();
+  void correct_residuals(double difference);
   bool verify();
   bool is_cheaper(const LeanRung& a, const LeanRung& b) const;
   void end_with_full();
@@ -132,6 +133,22 @@ bool Search::refine() {
   return true;
 }
 
+/// A run knows better than a residual: what the model above differs by, beyond all that is known of the refinements,
+/// goes to the largest difference that a residual has told.
+void Search::correct_residuals(double difference) {
+  std::optional<std::size_t> largest;
+  double missing = difference;
+  for (std::size_t k = 0; k < levels_.size(); ++k) {
+    if (!refines(k)) continue;
+    const double known = errors_.difference(k, levels_[k]);
+    missing -= known;
+    if (!by_residual_[k] || !errors_.knows(k, levels_[k])) continue;
+    if (!largest || known > errors_.difference(*largest, levels_[*largest])) largest = k;
+  }
+  if (largest && missing > 0)
+    errors_.add_difference(*largest, levels_[*largest], errors_.difference(*largest, levels_[*largest]) + missing);
+}
+
 /// Compares the model with the one above. True where the search ends.
 bool Search::verify() {
   const Levels finer = above(levels_);
@@ -142,8 +159,7 @@ bool Search::verify() {
   }
   const std::size_t lean = runs_.run(levels_), reference = runs_.run(finer);
   const double difference = runs_.between(lean, reference);
-  for (std::size_t k = 0; k < levels_.size(); ++k)  // a run knows better than a residual
-    if (by_residual_[k] && errors_.knows(k, levels_[k])) errors_.raise_difference(k, levels_[k], difference);
+  correct_residuals(difference);
   const double expected = errors_.estimate(levels_) - errors_.estimate(finer);
   runs_[lean].verified = difference + errors_.estimate(finer);
   if (*runs_[lean].verified <= runs_.allowed()) {

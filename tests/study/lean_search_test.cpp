@@ -118,6 +118,20 @@ TEST_F(LeanSearch, KeepsWhatChangesTheAnswer) {
   EXPECT_NEAR(outcome.omissions[0].change, 0.3, 1e-12);
 }
 
+TEST_F(LeanSearch, GoesFromTheMildestFormOfAnOmissionToTheSimplestThatServes) {
+  ladder_.simplifications[2].levels = {"as written", "mild", "simple", "simplest"};
+  const auto tried = [this](double tolerance) {
+    std::vector<std::string> words;
+    for (const OmissionTrial& trial : search(tolerance).omissions)
+      words.push_back(trial.what + (trial.left_out ? ": left out" : ": " + trial.why));
+    return words;
+  };
+  bending_ = 0.02;  // a level
+  EXPECT_THAT(tried(0.15), testing::ElementsAre("mild: a simpler form serves", "simple: left out",
+                                                "simplest: it changes the answer"));
+  EXPECT_THAT(tried(0.03), testing::ElementsAre("mild: it changes the answer"));
+}
+
 TEST_F(LeanSearch, EndsWithTheFullSceneWhereNoCheapModelServes) {
   mesh_ = 0.5;
   step_ = 0.5;
