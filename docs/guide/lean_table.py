@@ -72,8 +72,8 @@ def residual_rows(taut, name, study, folder):
     for trial in study["residual_estimates"]:
         run = "-"
         if trial["trusted"]:
-            problem = str(folder / "problems" / (trial["from"] + "_finer.json"))
-            run = f"{solve(taut, {'problem': problem, 'set': []}, folder / 'finer' / trial['from']):.2g}"
+            problem = str(folder / "problems" / (trial["name"] + ".json"))
+            run = f"{solve(taut, {'problem': problem, 'set': []}, folder / 'finer' / trial['name']):.2g}"
         rows.append([name, trial["what"], percent(trial["change"], study["magnitude"]), f"{trial['seconds']:.2g}", run,
                      trial["why"] or "trusted"])
     return rows

@@ -57,7 +57,7 @@ class Runner {
       : options_(options), full_(full), ladder_(ladder), observer_(options.quantity, full), start_(Clock::now()) {}
 
   LeanRung run(const Levels& levels, long max_linear_solves = 0);
-  ResidualTrial estimate(const LeanRung& coarse, const Levels& finer) const;
+  ResidualTrial estimate(const LeanRung& coarse, const Levels& finer);
   const Observer& observer() const { return observer_; }
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
   bool interrupted() const { return options_.stop && options_.stop->load(std::memory_order_relaxed); }
@@ -78,7 +78,7 @@ class Runner {
   const LeanLadder& ladder_;
   Observer observer_;
   Clock::time_point start_;
-  int runs_ = 0;
+  int runs_ = 0, estimates_ = 0;
 };
 
 void Runner::solve(const fs::path& file, long max_linear_solves, LeanRung& rung) const {
@@ -130,8 +130,9 @@ LeanRung Runner::run(const Levels& levels, long max_linear_solves) {
 }
 
 /// In this process: it takes one factorisation.
-ResidualTrial Runner::estimate(const LeanRung& coarse, const Levels& finer) const {
+ResidualTrial Runner::estimate(const LeanRung& coarse, const Levels& finer) {
   ResidualTrial trial;
+  trial.name = fmt::format("{}_residual_{:02}", full_.name, ++estimates_);
   trial.levels = finer;
   trial.words = words_of(ladder_, finer);
   const std::int64_t limit = options_.memory_limit_bytes;
@@ -139,9 +140,9 @@ ResidualTrial Runner::estimate(const LeanRung& coarse, const Levels& finer) cons
     trial.why = "it might need more memory than a model may";
     return trial;
   }
-  const fs::path file = options_.folder / problems_folder / (coarse.name + "_finer.json");
+  const fs::path file = options_.folder / problems_folder / (trial.name + ".json");
   try {
-    write_rung(full_, ladder_, finer, coarse.name + "_finer", file);
+    write_rung(full_, ladder_, finer, trial.name, file);
     const StoredRun run = read_stored_run(options_.folder / runs_folder / coarse.name / "run");
     ResidualEstimate found = residual_estimate(run, read_scene(file), observer_, options_.threads);
     trial.answer = std::move(found.answer);

@@ -30,8 +30,13 @@ Json rung_json(const LeanRung& rung, const LeanLadder& ladder) {
 }
 
 Json trial_json(const ResidualTrial& trial, const LeanOutcome& outcome) {
-  return {{"from", outcome.rungs[trial.from].name}, {"what", trial.words}, {"change", number_or_null(trial.change)},
-          {"trusted", trial.answer.has_value()},    {"why", trial.why},    {"seconds", trial.seconds},
+  return {{"name", trial.name},
+          {"from", outcome.rungs[trial.from].name},
+          {"what", trial.words},
+          {"change", number_or_null(trial.change)},
+          {"trusted", trial.answer.has_value()},
+          {"why", trial.why},
+          {"seconds", trial.seconds},
           {"linear_solves", trial.linear_solves}};
 }
 

@@ -33,7 +33,7 @@ struct LeanRung {
 struct ResidualTrial {
   std::size_t from = 0;          ///< the model whose answer was taken, a place in LeanOutcome::rungs
   Levels levels;                 ///< of the finer model, which was not run for it
-  std::string words;             ///< what that is
+  std::string name, words;       ///< of its problem, and what it is
   std::optional<Answer> answer;  ///< of the finer model; nothing where the estimate is not to be trusted
   std::optional<double> change;  ///< its distance from the other answer
   std::string why;               ///< it is not to be trusted
