@@ -41,6 +41,10 @@ LeanOptions options_of(const LeanArguments& arguments) {
     options.on_rung = [](const LeanRung& rung) {
       fmt::print(stderr, "lean: {}: {} in {:.2f} s\n", rung.words, rung.status, rung.seconds);
     };
+    options.on_estimate = [](const ResidualTrial& trial) {
+      fmt::print(stderr, "lean: {}: {} in {:.2f} s\n", trial.words,
+                 trial.answer ? "estimated from a residual" : "no estimate, " + trial.why, trial.seconds);
+    };
   }
   return options;
 }
@@ -83,10 +87,11 @@ constexpr const char* footer =
     "How exact (--tolerance): 5% or 0.05, relative; 2mm, 0.1Hz, 3N/m, 1J or abs:0.002, absolute.\n"
     "\n"
     "What happens: coarse meshes, long steps and loose tolerances are run first; what each changes, and what leaving\n"
-    "out bending, limits, layers or covers changes, gives an estimate of the error. The cheapest model whose estimate\n"
-    "times 1.5 is allowed is run and compared with the one above it. Where that does not confirm it the search goes "
-    "on\n"
-    "upwards, at worst to the scene as it is written, and says so.\n"
+    "out bending, limits, layers or covers changes, gives an estimate of the error; in static problems a residual may\n"
+    "tell the former without a run (lines `residual`). A model that takes more linear solves than it is worth is "
+    "given\n"
+    "up. The cheapest model whose estimate times 1.5 is allowed is run and compared with the one above it. Where that\n"
+    "does not confirm it the search goes on upwards, at worst to the scene as it is written, and says so.\n"
     "\n"
     "Files in DIR: NAME.lean.json (the model found; it runs), lean.json (everything), problems/ and runs/ (each model\n"
     "tried), pareto.svg. --report DIR writes one HTML page.\n"

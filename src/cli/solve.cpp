@@ -31,6 +31,7 @@ struct SolveArguments {
   int threads = 0, history = 0;
   std::pair<int, std::string> exported;  // step and file
   double max_seconds = 0;
+  long max_linear_solves = 0;
   bool resume = false, json = false, quiet = false;
   ReportOption report;
 };
@@ -60,9 +61,11 @@ std::string run_folder(const SolveArguments& arguments) {
 /// A model has no steps to resume, no frames and no modes.
 int solve_model(const SolveArguments& arguments) {
   if (arguments.resume || arguments.history > 0 || !arguments.accelerations.empty() || !arguments.format.empty() ||
-      arguments.exported.first > 0)
-    throw UsageError("--resume, --history, --export-step, --format and --record-accelerations are for scenes; " +
-                     arguments.problem + " is an optimisation model");
+      arguments.exported.first > 0 || arguments.max_linear_solves > 0)
+    throw UsageError(
+        "--resume, --history, --export-step, --max-linear-solves, --format and --record-accelerations are for "
+        "scenes; " +
+        arguments.problem + " is an optimisation model");
   return solve_model_file({arguments.problem, arguments.out, parse_settings(arguments.settings), arguments.max_seconds,
                            arguments.json, arguments.quiet, arguments.report});
 }
@@ -93,6 +96,7 @@ int solve(const SolveArguments& arguments) {
   options.accelerations = arguments.accelerations;
   options.threads = arguments.threads;
   options.max_seconds = arguments.max_seconds;
+  options.max_linear_solves = arguments.max_linear_solves;
   options.history_step = arguments.history;
   options.export_step = arguments.exported.first;
   options.export_file = arguments.exported.second;
@@ -185,6 +189,11 @@ void add_solve(CLI::App& program, int& code) {
             return std::strtod(text.c_str(), nullptr) > 0 ? "" : "expected a number above 0, got " + text;
           },
           "> 0"));
+  command
+      ->add_option("--max-linear-solves", arguments->max_linear_solves,
+                   "Stop after so many Newton systems, which are the same on every machine (exit code 3)")
+      ->type_name("N")
+      ->check(CLI::Range(1L, 1000000000L));
   command->add_option("--format", arguments->format, "Format of the frames: vtu, obj or none; replaces output.format")
       ->type_name("FORMAT")
       ->check(CLI::IsMember({"vtu", "obj", "none"}));

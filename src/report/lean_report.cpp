@@ -34,10 +34,9 @@ std::string seconds_text(double seconds) { return fmt::format("{:.2g} s", second
 /// By how much a model is wrong, as well as it is known.
 std::optional<double> known_error(const LeanRung& rung) { return rung.verified ? rung.verified : rung.estimated; }
 
-std::string answer_text(const LeanStudy& study, const LeanRung& rung) {
-  if (!rung.answer) return rung.status;
-  const bool one = rung.answer->values.size() == 1;
-  return fmt::format("{:.5g} {}", one ? rung.answer->values[0] : rung.answer->magnitude, study.quantity.unit());
+std::string answer_text(const LeanStudy& study, const Answer& answer) {
+  const bool one = answer.values.size() == 1;
+  return fmt::format("{:.5g} {}", one ? answer.values[0] : answer.magnitude, study.quantity.unit());
 }
 
 std::string mark_of(const LeanOutcome& outcome, std::size_t k) {
@@ -51,9 +50,16 @@ TextTable rung_table(const LeanStudy& study) {
                    "estimated", "verified", "true", "s", "solves"}};
   for (std::size_t k = 0; k < study.outcome.rungs.size(); ++k) {
     const LeanRung& rung = study.outcome.rungs[k];
-    table.push_back({mark_of(study.outcome, k), rung.words, answer_text(study, rung), error_text(study, rung.estimated),
+    table.push_back({mark_of(study.outcome, k), rung.words,
+                     rung.answer ? answer_text(study, *rung.answer) : rung.status, error_text(study, rung.estimated),
                      error_text(study, rung.verified), error_text(study, rung.true_error),
                      fmt::format("{:.2f}", rung.seconds), std::to_string(rung.linear_solves)});
+    for (const ResidualTrial& trial : study.outcome.residual_trials) {
+      if (trial.from != k) continue;
+      table.push_back({"residual", trial.words + ", not run",
+                       trial.answer ? answer_text(study, *trial.answer) : "not trusted", "-", "-", "-",
+                       fmt::format("{:.2f}", trial.seconds), std::to_string(trial.linear_solves)});
+    }
   }
   if (study.known_seconds) return table;
   const auto column = std::find(table[0].begin(), table[0].end(), "true") - table[0].begin();
@@ -65,6 +71,8 @@ TextTable omission_table(const LeanStudy& study) {
   TextTable table{{"tried", "changes the answer by", "", "why"}};
   for (const OmissionTrial& trial : study.outcome.omissions)
     table.push_back({trial.what, error_text(study, trial.change), trial.left_out ? "left out" : "kept", trial.why});
+  for (const ResidualTrial& trial : study.outcome.residual_trials)
+    if (!trial.answer) table.push_back({"residual of " + trial.words, "-", "not trusted", trial.why});
   for (const NotApplicable& one : study.ladder.not_applicable)
     table.push_back({one.name, "-", "not tried", one.reason});
   return table;

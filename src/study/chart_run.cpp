@@ -97,6 +97,8 @@ std::vector<std::string> solve_words(const ChartJob& job, const ChartProcess& pr
   for (const auto& [key, value] : job.overrides) words.insert(words.end(), {"--set", key + "=" + value});
   words.insert(words.end(),
                {"--threads", std::to_string(process.threads), "--max-seconds", fmt::format("{}", process.max_seconds)});
+  if (job.max_linear_solves > 0)
+    words.insert(words.end(), {"--max-linear-solves", std::to_string(job.max_linear_solves)});
   if (job.history_step > 0)
     words.insert(words.end(), {"--history", std::to_string(job.history_step), "--out", "history"});
   return words;

@@ -27,7 +27,8 @@ struct ChartProcess {
 struct ChartJob {
   std::string problem;  ///< as `taut solve` takes it
   Overrides overrides;
-  int history_step = 0;  ///< 0: no history
+  int history_step = 0;        ///< 0: no history
+  long max_linear_solves = 0;  ///< 0: no limit
 };
 
 /// `taut solve` with these words gives the same run.

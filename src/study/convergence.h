@@ -20,6 +20,8 @@ class Convergence {
   /// Of the levels `level` and `level - 1`; infinite where one of them was not solved.
   void add(int level, double difference) { differences_[level] = difference; }
   bool knows(int level) const { return differences_.contains(level); }
+  /// Throws std::out_of_range where it is not known.
+  double difference(int level) const { return differences_.at(level); }
   /// q from the two finest neighbouring differences.
   double ratio() const { return measured_ratio().value_or(usual_ratio); }
   /// Expected error of a level against level 0: from its own difference, else the largest that coarser ones predict.

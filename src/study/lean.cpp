@@ -10,6 +10,7 @@
 #include "files/atomic_file.h"
 #include "study/chart_run.h"
 #include "study/machine.h"
+#include "study/residual_estimate.h"
 #include "study/run_folder.h"
 #include "study/stored_run.h"
 
@@ -21,6 +22,7 @@ constexpr const char* lean_file = "lean.json";
 constexpr const char* problems_folder = "problems";
 constexpr const char* runs_folder = "runs";
 constexpr double unlimited_seconds = 1e6;
+constexpr std::int64_t growth_of_memory = 8;  // at most, by one mesh level: four times the vertices, and fill
 
 /// Throws RunRefused for a folder that is neither missing, nor empty, nor a search's; removes an earlier search.
 void begin(const fs::path& folder) {
@@ -54,32 +56,33 @@ class Runner {
   Runner(const LeanOptions& options, const Scene& full, const LeanLadder& ladder)
       : options_(options), full_(full), ladder_(ladder), observer_(options.quantity, full), start_(Clock::now()) {}
 
-  LeanRung run(const Levels& levels, double max_seconds = 0);
+  LeanRung run(const Levels& levels, long max_linear_solves = 0);
+  ResidualTrial estimate(const LeanRung& coarse, const Levels& finer);
   const Observer& observer() const { return observer_; }
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
   bool interrupted() const { return options_.stop && options_.stop->load(std::memory_order_relaxed); }
   bool out_of_time() const { return options_.max_seconds > 0 && seconds() >= options_.max_seconds; }
   LeanRunner callbacks() {
-    return {.run = [this](const Levels& levels, double max_seconds) { return run(levels, max_seconds); },
+    return {.run = [this](const Levels& levels, long max_linear_solves) { return run(levels, max_linear_solves); },
+            .estimate = [this](const LeanRung& coarse, const Levels& finer) { return estimate(coarse, finer); },
             .interrupted = [this] { return interrupted(); },
             .out_of_time = [this] { return out_of_time(); }};
   }
 
  private:
   using Clock = std::chrono::steady_clock;
-  void solve(const fs::path& file, double max_seconds, LeanRung& rung) const;
+  void solve(const fs::path& file, long max_linear_solves, LeanRung& rung) const;
 
   const LeanOptions& options_;
   const Scene& full_;
   const LeanLadder& ladder_;
   Observer observer_;
   Clock::time_point start_;
-  int runs_ = 0;
+  int runs_ = 0, estimates_ = 0;
 };
 
-void Runner::solve(const fs::path& file, double max_seconds, LeanRung& rung) const {
-  double left = max_seconds > 0 ? max_seconds : unlimited_seconds;
-  if (options_.max_seconds > 0) left = std::min(left, std::max(0.1, options_.max_seconds - seconds()));
+void Runner::solve(const fs::path& file, long max_linear_solves, LeanRung& rung) const {
+  const double left = options_.max_seconds > 0 ? std::max(0.1, options_.max_seconds - seconds()) : unlimited_seconds;
   const ChartProcess process{.program = options_.program,
                              .folder = options_.folder,
                              .threads = options_.threads,
@@ -91,7 +94,9 @@ void Runner::solve(const fs::path& file, double max_seconds, LeanRung& rung) con
   ChartPoint point;
   point.folder = std::string(runs_folder) + "/" + rung.name;
   const Clock::time_point begin = Clock::now();
-  run_point(process, {.problem = file.string(), .overrides = {}, .history_step = 0}, point);
+  run_point(process,
+            {.problem = file.string(), .overrides = {}, .history_step = 0, .max_linear_solves = max_linear_solves},
+            point);
   rung.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
   rung.status = point.status;
   rung.message = point.message;
@@ -107,7 +112,7 @@ void Runner::solve(const fs::path& file, double max_seconds, LeanRung& rung) con
   }
 }
 
-LeanRung Runner::run(const Levels& levels, double max_seconds) {
+LeanRung Runner::run(const Levels& levels, long max_linear_solves) {
   LeanRung rung;
   rung.levels = levels;
   rung.words = words_of(ladder_, levels);
@@ -115,13 +120,40 @@ LeanRung Runner::run(const Levels& levels, double max_seconds) {
   const fs::path file = options_.folder / problems_folder / (rung.name + ".json");
   try {
     write_rung(full_, ladder_, levels, rung.name, file);
-    solve(file, max_seconds, rung);
+    solve(file, max_linear_solves, rung);
   } catch (const InputError& error) {
     rung.status = "cannot be built";
     rung.message = error.what();
   }
   if (options_.on_rung) options_.on_rung(rung);
   return rung;
+}
+
+/// In this process: it takes one factorisation.
+ResidualTrial Runner::estimate(const LeanRung& coarse, const Levels& finer) {
+  ResidualTrial trial;
+  trial.name = fmt::format("{}_residual_{:02}", full_.name, ++estimates_);
+  trial.levels = finer;
+  trial.words = words_of(ladder_, finer);
+  const std::int64_t limit = options_.memory_limit_bytes;
+  if (limit > 0 && growth_of_memory * coarse.peak_memory_bytes > limit) {
+    trial.why = "it might need more memory than a model may";
+    return trial;
+  }
+  const fs::path file = options_.folder / problems_folder / (trial.name + ".json");
+  try {
+    write_rung(full_, ladder_, finer, trial.name, file);
+    const StoredRun run = read_stored_run(options_.folder / runs_folder / coarse.name / "run");
+    ResidualEstimate found = residual_estimate(run, read_scene(file), observer_, options_.threads);
+    trial.answer = std::move(found.answer);
+    trial.why = std::move(found.why);
+    trial.seconds = found.seconds;
+    trial.linear_solves = found.linear_solves;
+  } catch (const InputError& error) {
+    trial.why = error.what();
+  }
+  if (options_.on_estimate) options_.on_estimate(trial);
+  return trial;
 }
 
 LeanStudy new_study(const LeanOptions& options, const Scene& full, LeanLadder ladder) {

@@ -27,6 +27,7 @@ struct LeanOptions {
   const std::atomic<bool>* stop = nullptr;
   std::string version;                                    ///< of the calling program
   std::function<void(const LeanRung& finished)> on_rung;  ///< after each model
+  std::function<void(const ResidualTrial& finished)> on_estimate;
 };
 
 /// A question, the models that were tried, and the cheapest that answers it.

@@ -29,6 +29,17 @@ Json rung_json(const LeanRung& rung, const LeanLadder& ladder) {
   return json;
 }
 
+Json trial_json(const ResidualTrial& trial, const LeanOutcome& outcome) {
+  return {{"name", trial.name},
+          {"from", outcome.rungs[trial.from].name},
+          {"what", trial.words},
+          {"change", number_or_null(trial.change)},
+          {"trusted", trial.answer.has_value()},
+          {"why", trial.why},
+          {"seconds", trial.seconds},
+          {"linear_solves", trial.linear_solves}};
+}
+
 const char* end_word(LeanEnd end) {
   switch (end) {
     case LeanEnd::verified:
@@ -78,6 +89,9 @@ std::string lean_text(const LeanStudy& study) {
   json["costs_more_than_full"] = study.costs_more_than_full();
   json["rungs"] = Json::array();
   for (const LeanRung& rung : outcome.rungs) json["rungs"].push_back(rung_json(rung, study.ladder));
+  json["residual_estimates"] = Json::array();
+  for (const ResidualTrial& trial : outcome.residual_trials)
+    json["residual_estimates"].push_back(trial_json(trial, outcome));
   json["omissions"] = Json::array();
   for (const OmissionTrial& trial : outcome.omissions) {
     json["omissions"].push_back({{"what", trial.what},

@@ -20,8 +20,11 @@ struct Simplification {
   Kind kind = Kind::refinement;
   std::vector<std::string> levels;  ///< what each level is, in words: "16 x 16 cells"
   double cost_ratio = 1;            ///< seconds of a level over those of the next simpler one, before any is measured
+  double solve_ratio = 1;           ///< the same of a single linear solve
+  bool has_residual = false;        ///< a residual may tell what one level more changes (residual_estimate.h)
   std::function<void(nlohmann::json& document, int level)> apply;
 
+  bool refines() const { return kind == Kind::refinement; }
   int simplest() const { return static_cast<int>(levels.size()) - 1; }
 };
 
@@ -34,10 +37,14 @@ struct NotApplicable {
 struct LeanLadder {
   std::vector<Simplification> simplifications;
   std::vector<NotApplicable> not_applicable;
+  double full_linear_solves = 0;  ///< more than most scenes of this many steps take; 0: not known
 };
 
 /// A level for each simplification of a ladder: a rung.
 using Levels = std::vector<int>;
+
+/// True for the scene as it is written.
+bool is_full(const Levels& levels);
 
 /// What can be made coarser or left out so that it may cost less.
 LeanLadder lean_ladder(const Scene& scene);

@@ -61,8 +61,9 @@ void put_layer(Json& body, const Json& layer) {
   body.update(layer);
 }
 
-/// A plate's bending stiffness and plane stress, as a sheet has them. Its only surface needs no name.
-void make_sheet(Json& document, const std::string& name) {
+/// A plate's plane stress and, where it is to have one, bending stiffness, as a sheet has them. Its only surface needs
+/// no name.
+void make_sheet(Json& document, const std::string& name, bool bends) {
   Json& body = document["bodies"][name];
   const std::optional<Json> layer = merged_layer(body);
   if (!layer) return;
@@ -72,7 +73,7 @@ void make_sheet(Json& document, const std::string& name) {
   body.erase("material");
   if (body["model"] == "thick_shell") body["model"] = "cloth";
   body["membrane"] = material;
-  body["bending"] = {{"stiffness", modulus * t * t * t / (12 * (1 - nu * nu))}};
+  if (bends) body["bending"] = {{"stiffness", modulus * t * t * t / (12 * (1 - nu * nu))}};
   const bool alone = document["bodies"].size() == 1;
   for (Json* parts : {&document["constraints"], &document["loads"], &document["output"]["probes"]})
     for (Json& part : *parts)
@@ -90,7 +91,8 @@ void add_thick_shells(const std::string& name, const Json& body, LeanLadder& lad
     refuse(ladder, sheet, "it has plies, layers of different laws, or a thickness that varies");
     return;
   }
-  add(ladder, sheet, {name + " as a sheet"}, [name](Json& json, int) { make_sheet(json, name); });
+  add(ladder, sheet, {name + " as a sheet", name + " as a membrane without bending"},
+      [name](Json& json, int level) { make_sheet(json, name, level == 1); });
   if (!body.contains("layers")) return;
   const Json& layers = body["layers"];
   const bool divided = std::any_of(layers.begin(), layers.end(), [](const Json& l) { return l["prisms"] > 1; });

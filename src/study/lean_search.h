@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "study/convergence.h"
 #include "study/lean_ladder.h"
 #include "study/quantity_of_interest.h"
 
@@ -30,6 +29,18 @@ struct LeanRung {
                                      ///< plus what that one lacks by the estimate
 };
 
+/// What became of an attempt to tell a difference from a residual (residual_estimate.h).
+struct ResidualTrial {
+  std::size_t from = 0;          ///< the model whose answer was taken, a place in LeanOutcome::rungs
+  Levels levels;                 ///< of the finer model, which was not run for it
+  std::string name, words;       ///< of its problem, and what it is
+  std::optional<Answer> answer;  ///< of the finer model; nothing where the estimate is not to be trusted
+  std::optional<double> change;  ///< its distance from the other answer
+  std::string why;               ///< it is not to be trusted
+  double seconds = 0;            ///< by the clock
+  std::int64_t linear_solves = 0;
+};
+
 /// What became of an omission when it was tried.
 struct OmissionTrial {
   std::string what;
@@ -49,6 +60,7 @@ enum class LeanEnd {
 struct LeanOutcome {
   LeanEnd end = LeanEnd::not_solved;
   std::vector<LeanRung> rungs;  ///< in the order in which they were run
+  std::vector<ResidualTrial> residual_trials;
   std::vector<OmissionTrial> omissions;
   std::optional<std::size_t> lean;    ///< the model found, a place in `rungs`
   std::optional<std::size_t> above;   ///< what it was verified against
@@ -60,8 +72,10 @@ struct LeanOutcome {
 
 /// How models are run and when to stop.
 struct LeanRunner {
-  /// Runs one model, whatever becomes of it; for at most so many seconds where they are not 0.
-  std::function<LeanRung(const Levels&, double max_seconds)> run;
+  /// Runs one model, whatever becomes of it; with at most so many linear solves where they are not 0.
+  std::function<LeanRung(const Levels&, long max_linear_solves)> run;
+  /// Tells the answer of a finer model from the residual of one that was run; empty: never.
+  std::function<ResidualTrial(const LeanRung& coarse, const Levels& finer)> estimate;
   /// True once no further model may be started, and the last one may have been cut short.
   std::function<bool()> interrupted, out_of_time;
 };
@@ -71,10 +85,11 @@ inline constexpr double lean_safety = 1.5;
 
 /// Looks for the cheapest model whose answer is within the tolerance of the full scene's; see docs/guide/lean.md.
 ///
-/// It starts with every refinement at its simplest, measures what one level more changes and what each omission
-/// changes, and refines what its estimate is largest for until lean_safety times the sum of all estimates is allowed.
-/// That model is run and compared with the one above it: every refinement one level finer, nothing left out. Where that
-/// does not confirm it the search goes on from there, at worst up to the full scene.
+/// It starts with every refinement at its simplest, measures what one level more changes (by a residual where that
+/// tells it, else by running it) and what each omission changes, and refines what its estimate is largest for until
+/// lean_safety times the sum of all estimates is allowed. That model is run and compared with the one above it: every
+/// refinement one level finer, nothing left out. Where that does not confirm it the search goes on from there, at worst
+/// up to the full scene.
 LeanOutcome lean_search(const LeanLadder& ladder, const AnswerTolerance& tolerance, const LeanRunner& runner);
 
 }  // namespace taut

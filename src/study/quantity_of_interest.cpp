@@ -11,6 +11,7 @@
 #include "geometry/distance.h"
 #include "geometry/prolongation.h"
 #include "problems/build.h"
+#include "study/middle_surface.h"
 #include "study/peak_tension.h"
 
 namespace taut {
@@ -56,32 +57,6 @@ std::string names_of_probes(const Scene& scene) {
 }
 
 Answer number(double value, double magnitude) { return {Vector::Constant(1, value), magnitude}; }
-
-/// A body's middle surface: a vertex of its mesh is the mean of its bottom and top nodes.
-struct MiddleSurface {
-  TriangleMesh start;          // m
-  std::vector<Vector3> moved;  // displacements of its vertices, m
-};
-
-MiddleSurface middle_surface(const Model& model, const BodyRange& body, const Vector& end) {
-  const Vector start = model.start();
-  const auto middle = [&](const Vector& x, int vertex) {
-    const int bottom = body.first_vertex + vertex * body.levels, top = bottom + body.levels - 1;
-    return Vector3((x.segment<3>(3 * bottom) + x.segment<3>(3 * top)) / 2);
-  };
-  MiddleSurface surface;
-  for (int vertex = 0; vertex < body.vertices / body.levels; ++vertex) {
-    surface.start.vertices.push_back(middle(start, vertex));
-    surface.moved.push_back(middle(end, vertex) - surface.start.vertices.back());
-  }
-  const int triangles = body.levels > 1 ? body.triangles / 2 : body.triangles;
-  for (int t = body.first_triangle; t < body.first_triangle + triangles; ++t) {
-    Triangle triangle = model.triangles[static_cast<std::size_t>(t)];
-    for (int& vertex : triangle) vertex = (vertex - body.first_vertex) / body.levels;
-    surface.start.triangles.push_back(triangle);
-  }
-  return surface;
-}
 
 /// Vertices of the triangles, evenly thinned out.
 std::vector<Vector3> material_points(const TriangleMesh& mesh) {

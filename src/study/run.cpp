@@ -14,6 +14,7 @@
 #include "study/examine.h"
 #include "study/export_step.h"
 #include "study/frame_output.h"
+#include "study/limited_solver.h"
 #include "study/load_step.h"
 #include "study/machine.h"
 
@@ -30,6 +31,7 @@ constexpr double checkpoint_share = 0.05;  // of the time, where steps are short
 void check(const RunOptions& options) {
   if (!(options.max_seconds >= 0)) throw std::invalid_argument("RunOptions: max_seconds must be at least 0");
   if (options.threads < 0) throw std::invalid_argument("RunOptions: threads must be at least 0");
+  if (options.max_linear_solves < 0) throw std::invalid_argument("RunOptions: max_linear_solves must be at least 0");
   if (options.history_step < 0) throw std::invalid_argument("RunOptions: history_step must be at least 0");
   if (options.resume && options.folder.empty()) throw std::invalid_argument("RunOptions: resume needs a folder");
   if (options.resume && !options.accelerations.empty())
@@ -78,6 +80,7 @@ class Run {
   std::unique_ptr<Model> model_;
   std::unique_ptr<Stepper> stepper_;
   std::unique_ptr<Solver> own_solver_;
+  std::unique_ptr<LimitedSolver> limited_;
   Solver* solver_ = nullptr;
   std::optional<RunFolder> folder_;
   std::optional<FrameOutput> frames_;
@@ -113,6 +116,10 @@ bool Run::begin() {
     export_step(scene_, *model_, *stepper_);  // refuses what it cannot write, before any step
   if (!options_.solver) own_solver_ = build_solver(scene_, threads_);
   solver_ = options_.solver ? options_.solver : own_solver_.get();
+  if (options_.max_linear_solves > 0) {
+    limited_ = std::make_unique<LimitedSolver>(*solver_, options_.max_linear_solves);
+    solver_ = limited_.get();
+  }
 
   summary_.input_hash = scene_.hash;
   summary_.problem = scene_.name;
@@ -171,7 +178,11 @@ bool Run::step() {
     export_step(scene_, *model_, *stepper_).write(options_.export_file);
   std::optional<History> history;
   if (folder_ && stepper_->state().step + 1 == options_.history_step) history.emplace(*solver_, problem);
-  const Result result = solve_step(*stepper_, *solver_, scene_.solver.tolerance, scene_.time.halvings, budget_);
+  Result result = solve_step(*stepper_, *solver_, scene_.solver.tolerance, scene_.time.halvings, budget_);
+  if (limited_ && limited_->used_up() && result.status == Status::limit_point) {  // no turn of the path
+    result.status = Status::iteration_limit;
+    result.message = limited_->message();
+  }
   if (history) folder_->write_history(history->points());
   history.reset();
   const bool cut_short = (result.status == Status::interrupted && budget_.interrupted()) ||

@@ -19,6 +19,7 @@ struct RunOptions {
   std::filesystem::path accelerations;      ///< file for the spectral accelerations of a modal body; empty: none
   int threads = 0;                          ///< 0: those of the run that is resumed, or else the cores of the machine
   double max_seconds = 0;                   ///< wall clock of this call; 0: no limit
+  long max_linear_solves = 0;               ///< of this call: then a step ends with iteration_limit; 0: no limit
   int history_step = 0;                     ///< the step whose iterates are judged and written; 0: none
   int export_step = 0;                      ///< the step that is written as a model to `export_file`; 0: none
   std::filesystem::path export_file;        ///< .nl

@@ -92,11 +92,29 @@ TEST_F(Ladder, MeshesFromFilesAreSkippedWithTheReason) {
   EXPECT_THAT(ladder.not_applicable, Contains(Field(&NotApplicable::reason, HasSubstr("is from a file"))));
 }
 
-TEST_F(Ladder, AThickShellBecomesASheetWithItsBendingStiffness) {
+TEST_F(Ladder, AThickShellBecomesASheetWithItsBendingStiffnessOrAMembrane) {
   const Scene full = scene("validation/plate_clamped_10"), rung = with(full, "thick shell shell", 1);
   ASSERT_TRUE(rung.bodies[0].bending);
   EXPECT_NEAR(rung.bodies[0].bending->stiffness, 1e9 * 1e-3 / (12 * (1 - 0.09)), 1e-6);
   EXPECT_FALSE(rung.bodies[0].shell);
+  const Scene membrane = with(full, "thick shell shell", 2);
+  EXPECT_TRUE(membrane.bodies[0].membrane);
+  EXPECT_FALSE(membrane.bodies[0].bending);
+}
+
+TEST_F(Ladder, ACoverOfRatio16GoesDownThrough8And4And2) {
+  const LeanLadder ladder = lean_ladder(scene("quilt", {{"bodies.quilt.cover.mesh.refine", "4"}}));
+  const auto cover = std::find_if(ladder.simplifications.begin(), ladder.simplifications.end(),
+                                  [](const Simplification& one) { return one.name == "cover of quilt"; });
+  ASSERT_NE(cover, ladder.simplifications.end());
+  EXPECT_THAT(cover->levels, ElementsAre("as written", "cover of quilt at ratio 8", "cover of quilt at ratio 4",
+                                         "cover of quilt at ratio 2", "quilt without its cover"));
+}
+
+TEST_F(Ladder, ResidualsMayTellOfMeshesAndTolerancesOfStaticProblemsOnly) {
+  for (const auto& [name, may] : {std::pair{"stretched_strip", true}, std::pair{"trampoline", false}})
+    for (const Simplification& one : lean_ladder(scene(name)).simplifications)
+      EXPECT_EQ(one.has_residual, may && (one.name == "mesh" || one.name == "tolerance")) << name << ": " << one.name;
 }
 
 TEST_F(Ladder, MergedLayersKeepMassAndStretchingStiffness) {

@@ -37,7 +37,7 @@ class LeanSearch : public testing::Test {
   virtual double answer(const Levels& levels) const {
     return 1 + mesh_ * std::pow(4, levels[0]) + step_ * std::pow(2, levels[1]) + bending_ * levels[2];
   }
-  LeanRung run(const Levels& levels) {
+  LeanRung run(const Levels& levels, long max_linear_solves) {
     ++runs_;
     LeanRung rung;
     rung.seconds = 100 / (std::pow(4, levels[0]) * std::pow(1.8, levels[1]));
@@ -45,6 +45,12 @@ class LeanSearch : public testing::Test {
     seconds_ += rung.seconds;
     if (budget_ > 0 && seconds_ > budget_) {
       rung.status = "time_limit";
+      return rung;
+    }
+    if (slow_.contains(levels)) {
+      rung.linear_solves = max_linear_solves > 0 ? std::min(max_linear_solves, 1000000L) : 1000000L;
+      rung.seconds = static_cast<double>(rung.linear_solves);
+      rung.status = rung.linear_solves < 1000000 ? "iteration_limit" : "stalled";
       return rung;
     }
     if (fails_.contains(levels)) {
@@ -56,7 +62,8 @@ class LeanSearch : public testing::Test {
     return rung;
   }
   LeanOutcome search(double tolerance) {
-    const LeanRunner runner{.run = [this](const Levels& levels, double) { return run(levels); },
+    const LeanRunner runner{.run = [this](const Levels& levels, long most) { return run(levels, most); },
+                            .estimate = estimate_,
                             .interrupted = [this] { return interrupt_after_ > 0 && runs_ >= interrupt_after_; },
                             .out_of_time = [this] { return budget_ > 0 && seconds_ > budget_; }};
     return lean_search(ladder_, {tolerance, true}, runner);
@@ -72,7 +79,8 @@ class LeanSearch : public testing::Test {
 
   LeanLadder ladder_;
   double mesh_ = 1e-3, step_ = 1e-3, bending_ = 1e-4;
-  std::set<Levels> fails_;
+  std::set<Levels> fails_, slow_;
+  std::function<ResidualTrial(const LeanRung&, const Levels&)> estimate_;
   int runs_ = 0, interrupt_after_ = 0;
   double seconds_ = 0, budget_ = 0;
 };
@@ -110,6 +118,20 @@ TEST_F(LeanSearch, KeepsWhatChangesTheAnswer) {
   EXPECT_NEAR(outcome.omissions[0].change, 0.3, 1e-12);
 }
 
+TEST_F(LeanSearch, GoesFromTheMildestFormOfAnOmissionToTheSimplestThatServes) {
+  ladder_.simplifications[2].levels = {"as written", "mild", "simple", "simplest"};
+  const auto tried = [this](double tolerance) {
+    std::vector<std::string> words;
+    for (const OmissionTrial& trial : search(tolerance).omissions)
+      words.push_back(trial.what + (trial.left_out ? ": left out" : ": " + trial.why));
+    return words;
+  };
+  bending_ = 0.02;  // a level
+  EXPECT_THAT(tried(0.15), testing::ElementsAre("mild: a simpler form serves", "simple: left out",
+                                                "simplest: it changes the answer"));
+  EXPECT_THAT(tried(0.03), testing::ElementsAre("mild: it changes the answer"));
+}
+
 TEST_F(LeanSearch, EndsWithTheFullSceneWhereNoCheapModelServes) {
   mesh_ = 0.5;
   step_ = 0.5;
@@ -125,6 +147,70 @@ TEST_F(LeanSearch, StartsAtTheFirstLevelsThatAreSolved) {
   EXPECT_EQ(outcome.end, LeanEnd::verified);
   EXPECT_EQ(outcome.rungs[1].levels, (Levels{3, 2, 0}));
   EXPECT_LE(true_error(outcome), 0.1);
+}
+
+TEST_F(LeanSearch, GivesUpAModelThatTakesMoreLinearSolvesThanItIsWorth) {
+  ladder_.full_linear_solves = 2000;
+  ladder_.simplifications[0].solve_ratio = 4;
+  slow_ = {{4, 3, 0}};
+  const LeanOutcome outcome = search(0.1);
+  EXPECT_EQ(outcome.end, LeanEnd::verified);
+  EXPECT_EQ(outcome.rungs[0].status, "iteration_limit");
+  EXPECT_EQ(outcome.rungs[0].linear_solves, 2000 / 2 * 256) << "as much as half of the full scene";
+  EXPECT_EQ(outcome.rungs[1].levels, (Levels{3, 2, 0}));
+  EXPECT_LE(true_error(outcome), 0.1);
+}
+
+TEST_F(LeanSearch, NeedsNoRunWhereAResidualTellsTheDifference) {
+  search(0.2);
+  const double seconds_without = seconds_;
+  seconds_ = 0;
+  ladder_.simplifications[0].has_residual = true;
+  estimate_ = [this](const LeanRung&, const Levels& finer) {
+    ResidualTrial trial;
+    trial.levels = finer;
+    trial.answer = Answer{Vector::Constant(1, answer(finer)), 1};
+    return trial;
+  };
+  const LeanOutcome outcome = search(0.2);
+  EXPECT_EQ(outcome.end, LeanEnd::verified);
+  EXPECT_LE(true_error(outcome), 0.2);
+  ASSERT_FALSE(outcome.residual_trials.empty());
+  const ResidualTrial& first = outcome.residual_trials[0];
+  EXPECT_EQ(first.levels, (Levels{3, 3, 0}));
+  EXPECT_NEAR(*first.change, mesh_ * (256 - 64), 1e-12);
+  EXPECT_THAT(levels_of(outcome), Not(Contains(first.levels)));
+  EXPECT_LT(seconds_, seconds_without);
+}
+
+TEST_F(LeanSearch, RunsTheFinerModelWhereAResidualIsNotTrustedAndAsksNoMore) {
+  ladder_.simplifications[0].has_residual = true;
+  int asked = 0;
+  estimate_ = [&](const LeanRung&, const Levels& finer) {
+    ++asked;
+    ResidualTrial trial;
+    trial.levels = finer;
+    trial.why = "a constraint is active";
+    return trial;
+  };
+  const LeanOutcome outcome = search(0.05);
+  EXPECT_EQ(outcome.end, LeanEnd::verified);
+  EXPECT_EQ(asked, 1);
+  EXPECT_EQ(outcome.residual_trials[0].why, "a constraint is active");
+  EXPECT_THAT(levels_of(outcome), Contains(outcome.residual_trials[0].levels));
+}
+
+TEST_F(LeanSearch, VerifiesAgainstARunWhatAResidualHasSaid) {
+  ladder_.simplifications[0].has_residual = true;
+  estimate_ = [](const LeanRung& coarse, const Levels& finer) {  // as if a finer mesh changed nothing
+    ResidualTrial trial;
+    trial.levels = finer;
+    trial.answer = coarse.answer;
+    return trial;
+  };
+  const LeanOutcome outcome = search(0.05);
+  EXPECT_LE(true_error(outcome), 0.05);
+  EXPECT_TRUE(outcome.end == LeanEnd::verified || outcome.end == LeanEnd::exact);
 }
 
 TEST_F(LeanSearch, SaysThatTheFullSceneIsNotSolved) {
