@@ -1,6 +1,7 @@
 // Constraints that are left out of a solve because nothing seemed able to reach them.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "constraints/convex_sets.h"
@@ -93,6 +94,68 @@ TEST(Screening, KeepsWhatIsNearerOrActiveAndEverythingWhereItIsOff) {
   EXPECT_EQ(pulled(0.5, 0.3).counts.screened, 0);
   EXPECT_EQ(pulled(0.5, 0.2, 0.1).counts.screened, 0);
   EXPECT_EQ(pulled(0.5, 0.2, 0, 0).counts.screened, 0);
+}
+
+/// x_k <= 1 for each variable.
+class Walls final : public Constraint {
+ public:
+  Walls() {
+    for (int k = 0; k < 2; ++k) stencils_.add(std::array{k});
+  }
+  std::string name() const override { return "walls"; }
+  const Stencils& stencils() const override { return stencils_; }
+  int rows() const override { return 1; }
+  const ConvexSet& set() const override { return wall_.set(); }
+  void evaluate(Index, const double* x, double* c, double* jacobian) const override {
+    wall_.evaluate(0, x, c, jacobian);
+  }
+  void hessian(Index, const double* x, const double* lambda, Curvature curvature, double* hessian) const override {
+    wall_.hessian(0, x, lambda, curvature, hessian);
+  }
+  double violation(Index, const double* x) const override { return wall_.violation(0, x); }
+  std::string element_name(Index element) const override { return "x" + std::to_string(element); }
+
+ private:
+  Wall wall_;
+  Stencils stencils_{1};
+};
+
+/// |x - target|^2/2 of two variables.
+class TwoPulls final : public Energy {
+ public:
+  TwoPulls(double first, double second) : pulls_{Pull(first, 2), Pull(second, 2)} {
+    for (int k = 0; k < 2; ++k) stencils_.add(std::array{k});
+  }
+  std::string name() const override { return "pulls"; }
+  const Stencils& stencils() const override { return stencils_; }
+  double evaluate(Index element, const double* x, double* gradient, double* hessian,
+                  Curvature curvature) const override {
+    return pulls_[static_cast<std::size_t>(element)].evaluate(0, x, gradient, hessian, curvature);
+  }
+
+ private:
+  std::array<Pull, 2> pulls_;
+  Stencils stencils_{1};
+};
+
+TEST(Screening, LeavesOutSingleElements) {
+  for (const double second : {0.5, 3.0}) {  // where it was left out rightly and not
+    OwnedProblem owned;
+    owned.problem.initial_guess = Eigen::Vector2d(0.9, 0);
+    owned.problem.node_size = 1;
+    owned.add(std::make_shared<TwoPulls>(3, second));
+    owned.add(std::make_shared<Walls>());
+    WarmStart warm;
+    warm.multipliers = {Vector::Zero(2)};
+    warm.changes = {0.2};
+    const Result result = AugmentedLagrangian().solve(owned.problem, warm, {});
+    EXPECT_EQ(result.status, Status::solved) << result.message;
+    EXPECT_EQ(result.counts.screened, second < 1 ? 1 : 0);
+    EXPECT_EQ(result.counts.screening_failures, second < 1 ? 0 : 1);
+    EXPECT_NEAR(result.x[0], 1, 1e-6);
+    EXPECT_NEAR(result.x[1], std::min(second, 1.0), 1e-6);
+    EXPECT_NEAR(result.multipliers.at(0)[1], std::max(second - 1, 0.0), 1e-6);
+  }
 }
 
 TEST(Screening, ThatFailsIsSeenAndSolvedAgain) {
