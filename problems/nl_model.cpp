@@ -157,6 +157,7 @@ NlModel::NlModel(const std::filesystem::path& given) : data_(std::make_unique<Da
 NlModel::~NlModel() = default;
 
 const std::string& NlModel::name() const { return data_->name; }
+std::filesystem::path NlModel::file() const { return data_->stub.string() + ".nl"; }
 int NlModel::variables() const { return static_cast<int>(data_->lower.size()); }
 int NlModel::rows() const { return static_cast<int>(data_->row_lower.size()); }
 bool NlModel::has_objective() const { return data_->asl->i.n_obj_ > 0; }

@@ -26,6 +26,7 @@ class NlModel {
   NlModel& operator=(const NlModel&) = delete;
 
   const std::string& name() const;  ///< of the file, without ending
+  std::filesystem::path file() const;
   int variables() const;
   int rows() const;
   bool has_objective() const;

@@ -58,6 +58,7 @@ class SceneReader : public ProbeReader {
     result.max_newton = json["max_newton"];
     result.inner_tolerance_factor = json["inner_tolerance_factor"];
     result.longest_step = json["longest_step"];
+    result.newton_finish = json["newton_finish"];
     result.screening = json["screening"];
     result.starts = json["starts"];
     result.conjugate_gradients = json["null_space"] == "conjugate_gradients";

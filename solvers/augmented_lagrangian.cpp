@@ -201,6 +201,7 @@ void AugmentedLagrangian::Run::loop() {
       best_judged = judged;
     }
     if (judged.within(options.tolerances)) return finish(Status::solved, "residuals within tolerance");
+    if (newton_finish()) return finish(Status::solved, "residuals within tolerance, by Newton steps on all of them");
     if (inner_status == Status::interrupted) return finish(inner_status, "stopped on request");
     if (inner_status == Status::time_limit) return finish(inner_status, "out of time");
     if (result.counts.outer >= options.max_outer || result.counts.linear_solves >= options.max_newton) {
