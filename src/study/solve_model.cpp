@@ -92,6 +92,11 @@ ModelSolution solve_model(const NlModel& model, const Scene& settings, const Bud
       record.residuals = residuals(problem, result);
     }
     record.residuals.worst_node = posed.name_of(record.residuals.worst_node);
+    if (!problem.fixed_variables.empty()) {
+      Violation& fixed = record.residuals.violations.back();  // which the residuals call pins
+      fixed.constraint = "fixed variables";
+      fixed.where = posed.name_of(fixed.where);
+    }
     record.objective = posed.objective(result.x);
     record.status = result.status;
     record.message = result.message;
@@ -110,6 +115,7 @@ ModelSolution solve_model(const NlModel& model, const Scene& settings, const Bud
     record.seconds = result.timings;
     summary.steps_asked = 1;
     add_step(summary, record);
+    if (record.status != Status::solved) summary.message = record.message;  // there is no other step to tell it from
     summary.worst_elements = worst_elements(problem, result.x, worst_elements_kept);
     summary.worst_elements_step = 1;
     solution.dual = posed.dual(result);
