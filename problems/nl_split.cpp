@@ -83,7 +83,8 @@ class Splitter {
         return add_variable(static_cast<int>(reinterpret_cast<const expr_v*>(e) - asl_->I.var_e_));
       case sum_of_list: {
         int sum = constant(0);
-        for (expr** part = e->L.ep; part < e->R.ep && sum >= 0; ++part) sum = combine(NlOperator::plus, sum, add(*part));
+        for (expr** part = e->L.ep; part < e->R.ep && sum >= 0; ++part)
+          sum = combine(NlOperator::plus, sum, add(*part));
         return sum;
       }
       case square: {
@@ -97,8 +98,8 @@ class Splitter {
         if (!known(what)) return -1;
     }
     const bool power = what == constant_exponent || what == constant_base;
-    const bool binary = power || what <= static_cast<int>(NlOperator::power) ||
-                        what == static_cast<int>(NlOperator::atan2);
+    const bool binary =
+        power || what <= static_cast<int>(NlOperator::power) || what == static_cast<int>(NlOperator::atan2);
     const int left = add(e->L.e), right = binary ? add(e->R.e) : -1;
     if (left < 0 || (binary && right < 0)) return -1;
     return push({power ? NlOperator::power : static_cast<NlOperator>(what), left, right});
@@ -159,8 +160,9 @@ std::vector<NlTerm> objective_terms(const std::filesystem::path& file, int most)
   if (good) {
     for (const ograd* entry = Ograd[0]; entry; entry = entry->next) {
       if (entry->coef == 0) continue;
-      terms.push_back({{entry->varno},
-                       {{NlOperator::constant, -1, -1, entry->coef}, {NlOperator::variable, 0}, {NlOperator::times, 0, 1}}});
+      terms.push_back(
+          {{entry->varno},
+           {{NlOperator::constant, -1, -1, entry->coef}, {NlOperator::variable, 0}, {NlOperator::times, 0, 1}}});
     }
   }
   ASL* freed = made;

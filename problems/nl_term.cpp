@@ -136,8 +136,8 @@ double NlTerm::evaluate(const double* x, double* gradient, double* hessian) cons
     curvature(k) = p.a * curvature(node.left) + p.aa * a * a.transpose();
     if (!b_varies) continue;
     const auto b = slopes.col(node.right);
-    curvature(k) += p.b * curvature(node.right) + p.bb * b * b.transpose() +
-                    p.ab * (a * b.transpose() + b * a.transpose());
+    curvature(k) +=
+        p.b * curvature(node.right) + p.bb * b * b.transpose() + p.ab * (a * b.transpose() + b * a.transpose());
   }
   if (gradient) Eigen::Map<Vector>(gradient, width) = slopes.col(count - 1);
   if (hessian) Eigen::Map<Matrix>(hessian, width, width) = curvature(count - 1);

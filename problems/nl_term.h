@@ -46,8 +46,8 @@ struct NlTerm {
   std::vector<int> variables;
   std::vector<Node> nodes;  ///< operands before operators, the last one is the term's value
 
-  /// The value at x (as many doubles as variables); NaN or infinite outside the domain. `gradient` and `hessian` (dense,
-  /// both triangles) are overwritten where they are not null.
+  /// The value at x (as many doubles as variables); NaN or infinite outside the domain. `gradient` and `hessian`
+  /// (dense, both triangles) are overwritten where they are not null.
   double evaluate(const double* x, double* gradient, double* hessian) const;
 };
 

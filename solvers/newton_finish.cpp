@@ -43,9 +43,9 @@ bool AugmentedLagrangian::Run::newton_step() {
 /// assembly's matrix.
 ///
 /// Of the matrix [H J^T; J -1/mu] of these conditions, with a penalty's -1/mu in the corner, the augmented Lagrangian's
-/// is what is left when the multipliers are eliminated: positive definite where H is on J dx = 0, mu being large enough.
-/// So nothing else is factorised, and rounds with the same factor and the residuals at the new point take away the
-/// effect of 1/mu, each by a factor of about mu over the energies' stiffness [Gill and Robinson 2012].
+/// is what is left when the multipliers are eliminated: positive definite where H is on J dx = 0, mu being large
+/// enough. So nothing else is factorised, and rounds with the same factor and the residuals at the new point take away
+/// the effect of 1/mu, each by a factor of about mu over the energies' stiffness [Gill and Robinson 2012].
 bool AugmentedLagrangian::Run::newton_finish() {
   constexpr double near = 1e-3;  // all residuals, relative
   constexpr int most_factors = 3, most_rounds = 4;
@@ -90,7 +90,8 @@ bool AugmentedLagrangian::Run::newton_finish() {
     for (int round = 0; round < most_rounds; ++round) {
       if (result.counts.linear_solves >= options.max_newton || budget.interrupted() || budget.out_of_time()) break;
       const Point last = here();
-      if (newton_step() && judged.over(options.tolerances) <= worth_another * last.judged.over(options.tolerances)) continue;
+      if (newton_step() && judged.over(options.tolerances) <= worth_another * last.judged.over(options.tolerances))
+        continue;
       go_to(last);
       break;
     }

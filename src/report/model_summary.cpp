@@ -12,9 +12,9 @@ using Out = std::back_insert_iterator<std::string>;
 void print_residuals(Out out, const RunSummary& s) {
   fmt::format_to(out, "residuals, computed without the solver\n");
   fmt::format_to(out, "  {:<16} {:.2e}  {}\n", "stationarity", s.stationarity.scaled,
-                 s.stationarity.unscaled > 0 ? fmt::format("{:.2e} of {:.2e}, at {}", s.stationarity.unscaled,
-                                                           s.force_scale, s.worst_node)
-                                             : "");
+                 s.stationarity.unscaled > 0
+                     ? fmt::format("{:.2e} of {:.2e}, at {}", s.stationarity.unscaled, s.force_scale, s.worst_node)
+                     : "");
   fmt::format_to(out, "  {:<16} {:.2e}  largest violation of a row or bound as written\n", "feasibility",
                  s.feasibility.unscaled);
   fmt::format_to(out, "  {:<16} {:.2e}\n", "complementarity", s.complementarity.scaled);

@@ -176,8 +176,8 @@ TEST_F(NlModelTest, ARowWithoutVariablesOutsideItsBoundsIsRefusedByName) {
   }
 }
 
-/// min (1 - x_0)^2 (1 - x_1)^2 ... of all variables with sum x_i <= count: functions of more variables than a stencil of
-/// a scene has, and no sums of small terms.
+/// min (1 - x_0)^2 (1 - x_1)^2 ... of all variables with sum x_i <= count: functions of more variables than a stencil
+/// of a scene has, and no sums of small terms.
 NlFile wide_model(int count) {
   NlFile file;
   file.start = Vector::Constant(count, 0.5);

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "problems/nl_writer.h"
 #include "problems/read_scene.h"
@@ -120,6 +122,38 @@ class WideModel : public FilesTest {
   }
 };
 
+class Infeasible : public FilesTest {};
+
+TEST_F(Infeasible, VariantsOfOrdinaryProblemsAreCalledSoWhereSlsqpClaimsSuccess) {
+  const NlExpression x = NlExpression::variable(0), y = NlExpression::variable(1);
+  const NlExpression rosenbrock = 100 * square(y - square(x)) + square(1 - x), bowl = square(x) + square(y);
+  const NlFile::Row at_least_3{"at least 3", {0, {{0, 1}, {1, 1}}}, 3, HUGE_VAL},
+      at_most_2{"at most 2", {0, {{0, 1}, {1, 1}}}, -HUGE_VAL, 2}, disc{"disc", {bowl, {}}, -HUGE_VAL, 1},
+      product{"product", {x * y, {}}, 1, HUGE_VAL};
+  const std::vector<std::pair<NlExpression, std::vector<NlFile::Row>>> variants{{rosenbrock, {at_least_3, at_most_2}},
+                                                                                {bowl, {at_least_3, at_most_2}},
+                                                                                {rosenbrock, {disc, at_least_3}},
+                                                                                {bowl, {product, disc}}};
+  int claims = 0;
+  for (const auto& [objective, rows] : variants) {
+    NlFile file;
+    file.start = Vector::Constant(2, 0.5);
+    file.lower = Vector::Constant(2, -HUGE_VAL);
+    file.upper = Vector::Constant(2, HUGE_VAL);
+    file.variable_names = {"x", "y"};
+    file.objective.nonlinear = objective;
+    file.rows = rows;
+    file.write(path("variant.nl"));
+    const ModelSolution ours = solve_file(path("variant.nl")),
+                        theirs = solve_file(path("variant.nl"), {{"solver.method", "nlopt"}, {"solver.starts", "1"}});
+    EXPECT_EQ(ours.summary.status, Status::infeasible) << rows[0].name << ", " << rows[1].name;
+    EXPECT_FALSE(ours.false_success);
+    EXPECT_NE(theirs.summary.status, Status::solved);
+    claims += theirs.false_success;
+  }
+  EXPECT_GE(claims, 2);
+}
+
 TEST_F(WideModel, TenThousandVariablesTakeTheLinearSystemsOfAHundred) {
   const ModelSolution few = solve_file(extended_rosenbrock(100), {{"solver.starts", "1"}});
   const ModelSolution many = solve_file(extended_rosenbrock(10000), {{"solver.starts", "1"}});
@@ -129,8 +163,8 @@ TEST_F(WideModel, TenThousandVariablesTakeTheLinearSystemsOfAHundred) {
 }
 
 TEST_F(WideModel, AStringOverAnObstacleIsStraightOnBothSides) {
-  // min sum of (u_{i+1} - u_i)^2/2 with u = 0 at both ends, at least 1 in the middle, at least -1 elsewhere, and at most
-  // 5 in the left half.
+  // min sum of (u_{i+1} - u_i)^2/2 with u = 0 at both ends, at least 1 in the middle, at least -1 elsewhere, and at
+  // most 5 in the left half.
   constexpr int intervals = 400, middle = intervals / 2;
   NlFile file;
   file.start = Vector::Zero(intervals + 1);
@@ -145,8 +179,8 @@ TEST_F(WideModel, AStringOverAnObstacleIsStraightOnBothSides) {
   for (int i = 0; i <= intervals; ++i) file.variable_names.push_back("u" + std::to_string(i));
   file.objective.nonlinear = sum(terms);
   file.write(path("string.nl"));
-  const ModelSolution solution = solve_file(path("string.nl"), {{"solver.starts", "1"},
-                                                                {"solver.tolerance.stationarity", "1e-9"}});
+  const ModelSolution solution =
+      solve_file(path("string.nl"), {{"solver.starts", "1"}, {"solver.tolerance.stationarity", "1e-9"}});
   EXPECT_EQ(solution.summary.status, Status::solved) << solution.summary.message;
   EXPECT_NEAR(solution.summary.objective, 2.0 / intervals, 1e-6 * 2.0 / intervals);
   for (int i = 0; i <= intervals; ++i)
