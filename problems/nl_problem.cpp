@@ -294,4 +294,19 @@ Vector NlProblem::dual(const Result& result) const {
   return dual;
 }
 
+WarmStart NlProblem::warm() const {
+  WarmStart warm;
+  const Vector& dual = model_.start_dual();
+  if (dual.isZero(0)) return warm;
+  for (const auto& constraint : constraints_)
+    warm.multipliers.push_back(Vector::Zero(constraint->stencils().count() * constraint->rows()));
+  const double sign = model_.maximise() ? 1 : -1;
+  for (std::size_t row = 0; row < constraint_of_row_.size(); ++row) {
+    if (constraint_of_row_[row] >= 0)
+      warm.multipliers[static_cast<std::size_t>(constraint_of_row_[row])][0] =
+          sign * dual[static_cast<Index>(row)] / row_scale_[row];
+  }
+  return warm;
+}
+
 }  // namespace taut

@@ -52,11 +52,11 @@ bool better(const Problem& problem, const Result& result, const Result& than) {
 }
 
 /// The best result from the model's start and, so that a nonconvex model has more than one chance, others.
-Result solve(const NlModel& model, const Problem& posed, const Scene& settings, const Budget& budget,
-             std::string& solver_name) {
+Result solve(const NlModel& model, const Problem& posed, const WarmStart& warm, const Scene& settings,
+             const Budget& budget, std::string& solver_name) {
   const std::unique_ptr<Solver> solver = build_solver(settings, 1);
   solver_name = solver->name();
-  Result best = solver->solve(posed, {}, budget);
+  Result best = solver->solve(posed, warm, budget);
   Counts counts = best.counts;
   Timings timings = best.timings;
   Problem problem = posed;
@@ -84,7 +84,7 @@ ModelSolution solve_model(const NlModel& model, const Scene& settings, const Bud
     const Stopwatch watch(summary.seconds.total);
     const NlProblem posed(model);
     const Problem& problem = posed.problem();
-    Result result = solve(model, problem, settings, budget, summary.solver);
+    Result result = solve(model, problem, posed.warm(), settings, budget, summary.solver);
     StepRecord record;
     record.step = 1;
     {

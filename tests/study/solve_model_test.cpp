@@ -154,6 +154,30 @@ TEST_F(Infeasible, VariantsOfOrdinaryProblemsAreCalledSoWhereSlsqpClaimsSuccess)
   EXPECT_GE(claims, 2);
 }
 
+TEST_F(WideModel, MultipliersInTheModelAreTheFirstOnes) {
+  // min x^2 + y^2 with 1000 (x + y) >= 4000: f = 8 at (2, 2), where the rate of f in the bound is 0.004.
+  std::vector<long> systems;
+  for (const double dual : {0.0, 0.004}) {
+    const NlExpression x = NlExpression::variable(0), y = NlExpression::variable(1);
+    NlFile file;
+    file.start = Vector::Constant(2, 2);
+    file.lower = Vector::Constant(2, -HUGE_VAL);
+    file.upper = Vector::Constant(2, HUGE_VAL);
+    file.variable_names = {"x", "y"};
+    file.objective.nonlinear = square(x) + square(y);
+    file.rows.push_back({"row", {0, {{0, 1000}, {1, 1000}}}, 4000, HUGE_VAL, dual});
+    file.write(path("guess.nl"));
+    const NlModel model(path("guess.nl"));
+    EXPECT_EQ(model.start_dual()[0], dual);
+    const ModelSolution solution =
+        solve_file(path("guess.nl"), {{"solver.starts", "1"}, {"solver.central_path", "false"}});
+    EXPECT_NEAR(solution.dual[0], 0.004, 1e-8);
+    systems.push_back(solution.summary.counts.linear_solves);
+  }
+  EXPECT_EQ(systems[1], 0) << "from the solution and its multiplier";
+  EXPECT_GT(systems[0], 0);
+}
+
 TEST_F(WideModel, TenThousandVariablesTakeTheLinearSystemsOfAHundred) {
   const ModelSolution few = solve_file(extended_rosenbrock(100), {{"solver.starts", "1"}});
   const ModelSolution many = solve_file(extended_rosenbrock(10000), {{"solver.starts", "1"}});
