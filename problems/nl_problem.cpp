@@ -168,7 +168,8 @@ class NlBounds final : public Constraint {
 
 /// Beyond this a dense matrix of second derivatives takes more memory and time than anyone has.
 constexpr std::size_t largest_width = 4000;
-/// A wider objective is taken apart into terms, and bounds are families with one penalty, where that can be done.
+/// A wider nonlinear objective is taken apart into terms, and bounds are families with one penalty, where that can be
+/// done.
 constexpr int largest_small_width = max_stencil_width;
 
 void check_width(const NlModel& model, int function, const std::string& what) {
@@ -207,7 +208,8 @@ NlProblem::NlProblem(const NlModel& model) : model_(model) {
   check_bounds(model);
   const double sign = model.maximise() ? -1 : 1;
   std::vector<NlTerm> terms;
-  if (model.has_objective() && model.variables_of(NlModel::objective).size() > largest_small_width)
+  if (model.has_objective() && !model.linear(NlModel::objective) &&
+      model.variables_of(NlModel::objective).size() > largest_small_width)
     terms = objective_terms(model.file(), largest_small_width);
   std::vector<double> fixed;
   std::map<double, std::vector<int>> families;
