@@ -107,14 +107,15 @@ Partials partials(NlOperator what, double a, double b, bool b_varies) {
 double NlTerm::evaluate(const double* x, double* gradient, double* hessian) const {
   const auto width = static_cast<Index>(variables.size()), count = static_cast<Index>(nodes.size());
   Vector values(count);
-  // Of each node; nodes without variables have zeros.
-  Matrix slopes = Matrix::Zero(width, gradient || hessian ? count : 0);
-  Matrix curvatures = Matrix::Zero(width * width, hessian ? count : 0);
+  Matrix slopes = Matrix::Zero(width, gradient || hessian ? count : 0);  // of each node
+  Matrix curvatures(width * width, hessian ? count : 0);                 // of those that are curved
+  std::vector<char> curved(hessian ? nodes.size() : 0, 0);
   const auto curvature = [&](Index node) {
     return Eigen::Map<Matrix>(curvatures.data() + node * width * width, width, width);
   };
+  const auto varies = [&](int node) { return node >= 0 && nodes[node].what != NlOperator::constant; };
   for (Index k = 0; k < count; ++k) {
-    const Node& node = nodes[static_cast<std::size_t>(k)];
+    const Node& node = nodes[k];
     if (node.what == NlOperator::constant) {
       values[k] = node.value;
       continue;
@@ -124,23 +125,31 @@ double NlTerm::evaluate(const double* x, double* gradient, double* hessian) cons
       if (slopes.size() > 0) slopes(node.left, k) = 1;
       continue;
     }
-    const bool binary = node.right >= 0;
-    const bool b_varies = binary && nodes[static_cast<std::size_t>(node.right)].what != NlOperator::constant;
-    const Partials p = partials(node.what, values[node.left], binary ? values[node.right] : 0, b_varies);
+    const bool a_varies = varies(node.left), b_varies = varies(node.right);
+    Partials p = partials(node.what, values[node.left], node.right >= 0 ? values[node.right] : 0, b_varies);
     values[k] = p.value;
     if (slopes.size() == 0) continue;
-    const auto a = slopes.col(node.left);
-    slopes.col(k) = p.a * a;
-    if (b_varies) slopes.col(k) += p.b * slopes.col(node.right);
+    if (!a_varies) p.a = p.aa = p.ab = 0;
+    if (!b_varies) p.b = p.bb = p.ab = 0;
+    const auto a = slopes.col(node.left), b = slopes.col(b_varies ? node.right : node.left);
+    slopes.col(k) = p.a * a + p.b * b;
     if (!hessian) continue;
-    curvature(k) = p.a * curvature(node.left) + p.aa * a * a.transpose();
-    if (!b_varies) continue;
-    const auto b = slopes.col(node.right);
-    curvature(k) +=
-        p.b * curvature(node.right) + p.bb * b * b.transpose() + p.ab * (a * b.transpose() + b * a.transpose());
+    const bool a_curved = curved[node.left], b_curved = b_varies && curved[node.right];
+    curved[k] = a_curved || b_curved || p.aa != 0 || p.ab != 0 || p.bb != 0;
+    if (!curved[k]) continue;
+    auto h = curvature(k);
+    h.setZero();
+    if (a_curved) h += p.a * curvature(node.left);
+    if (b_curved) h += p.b * curvature(node.right);
+    if (p.aa != 0) h += p.aa * a * a.transpose();
+    if (p.bb != 0) h += p.bb * b * b.transpose();
+    if (p.ab != 0) h += p.ab * (a * b.transpose() + b * a.transpose());
   }
   if (gradient) Eigen::Map<Vector>(gradient, width) = slopes.col(count - 1);
-  if (hessian) Eigen::Map<Matrix>(hessian, width, width) = curvature(count - 1);
+  if (hessian) {
+    Eigen::Map<Matrix> whole(hessian, width, width);
+    curved.back() ? whole = curvature(count - 1) : whole.setZero();
+  }
   return values[count - 1];
 }
 
