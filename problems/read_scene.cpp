@@ -12,6 +12,7 @@
 #include "problems/hash.h"
 #include "problems/scene_from_json.h"
 #include "problems/schema.h"
+#include "problems/solver_from_json.h"
 
 namespace taut {
 
