@@ -104,6 +104,7 @@ AugmentedLagrangianOptions augmented_lagrangian_options(const Scene& scene, int 
   options.screening = scene.solver.screening;
   if (scene.solver.longest_step > 0)
     options.newton.longest_step = options.central_path.longest_step = scene.solver.longest_step;
+  options.newton_finish = scene.solver.newton_finish;
   options.max_outer = scene.solver.max_outer;
   options.max_newton = scene.solver.max_newton;
   options.threads = threads;

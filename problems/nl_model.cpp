@@ -27,7 +27,7 @@ struct NlModel::Data {
   ASL* asl = nullptr;
   std::filesystem::path stub;
   std::string name;
-  Vector lower, upper, row_lower, row_upper, start;
+  Vector lower, upper, row_lower, row_upper, start, start_dual;
   std::vector<std::vector<int>> row_variables;
   std::vector<int> objective_variables;
   bool linear_objective = true;
@@ -62,7 +62,7 @@ bool read_model(ASL* asl, const std::string& stub, std::string& reason) {
   way_back = &back;
   if (setjmp(back) == 0) {
     FILE* file = jac0dim(const_cast<char*>(stub.c_str()), static_cast<ftnlen>(stub.size()));
-    want_xpi0 = 1;
+    want_xpi0 = 3;
     asl->i.nlvog = n_var;
     good = file && pfgh_read(file, ASL_return_read_err) == ASL_readerr_none;
   }
@@ -136,6 +136,7 @@ NlModel::NlModel(const std::filesystem::path& given) : data_(std::make_unique<Da
     d.row_upper[i] = bound(LUrhs[2 * i + 1]);
   }
   d.start = X0 ? Vector(Eigen::Map<const Vector>(X0, n)) : Vector(Vector::Zero(n));
+  d.start_dual = pi0 ? Vector(Eigen::Map<const Vector>(pi0, m)) : Vector(Vector::Zero(m));
   d.row_variables.resize(static_cast<std::size_t>(m));
   for (int i = 0; i < m; ++i) {
     for (const cgrad* entry = Cgrad[i]; entry; entry = entry->next) d.row_variables[i].push_back(entry->varno);
@@ -157,6 +158,7 @@ NlModel::NlModel(const std::filesystem::path& given) : data_(std::make_unique<Da
 NlModel::~NlModel() = default;
 
 const std::string& NlModel::name() const { return data_->name; }
+std::filesystem::path NlModel::file() const { return data_->stub.string() + ".nl"; }
 int NlModel::variables() const { return static_cast<int>(data_->lower.size()); }
 int NlModel::rows() const { return static_cast<int>(data_->row_lower.size()); }
 bool NlModel::has_objective() const { return data_->asl->i.n_obj_ > 0; }
@@ -166,6 +168,7 @@ const Vector& NlModel::upper() const { return data_->upper; }
 const Vector& NlModel::row_lower() const { return data_->row_lower; }
 const Vector& NlModel::row_upper() const { return data_->row_upper; }
 const Vector& NlModel::start() const { return data_->start; }
+const Vector& NlModel::start_dual() const { return data_->start_dual; }
 std::string NlModel::variable_name(int variable) const {
   ASL* asl = data_->asl;
   return var_name(variable);

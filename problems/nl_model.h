@@ -26,6 +26,7 @@ class NlModel {
   NlModel& operator=(const NlModel&) = delete;
 
   const std::string& name() const;  ///< of the file, without ending
+  std::filesystem::path file() const;
   int variables() const;
   int rows() const;
   bool has_objective() const;
@@ -34,7 +35,8 @@ class NlModel {
   const Vector& upper() const;
   const Vector& row_lower() const;  ///< of the rows
   const Vector& row_upper() const;
-  const Vector& start() const;  ///< zero where the model has none
+  const Vector& start() const;       ///< zero where the model has none
+  const Vector& start_dual() const;  ///< first guess at NlProblem::dual, zero where the model has none
   std::string variable_name(int variable) const;
   std::string row_name(int row) const;
 

@@ -4,8 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
 
 #include "constraints/convex_sets.h"
+#include "problems/nl_term.h"
 #include "problems/scene.h"
 
 namespace taut {
@@ -48,6 +52,32 @@ class NlObjective final : public Energy {
   Stencils stencils_;
 };
 
+/// Terms of the objective with the same number of variables, an element each.
+class NlTerms final : public Energy {
+ public:
+  NlTerms(int width, double sign) : sign_(sign), stencils_(width) {}
+  void add(NlTerm term) {
+    stencils_.add(term.variables);
+    terms_.push_back(std::move(term));
+  }
+  std::string name() const override { return "objective"; }
+  const Stencils& stencils() const override { return stencils_; }
+  double evaluate(Index element, const double* x, double* gradient, double* hessian,
+                  Curvature curvature) const override {
+    const double value = terms_[static_cast<std::size_t>(element)].evaluate(x, gradient, hessian);
+    const Index width = stencils_.width();
+    if (sign_ < 0 && gradient) Eigen::Map<Vector>(gradient, width) *= -1;
+    if (sign_ < 0 && hessian) Eigen::Map<Vector>(hessian, width * width) *= -1;
+    if (hessian && curvature == Curvature::positive_semidefinite) make_positive_semidefinite(hessian, width);
+    return sign_ * value;
+  }
+
+ private:
+  double sign_;
+  Stencils stencils_;
+  std::vector<NlTerm> terms_;
+};
+
 /// lower <= scale g(x) <= upper for one row.
 class NlRow final : public Constraint {
  public:
@@ -88,35 +118,59 @@ class NlRow final : public Constraint {
   Stencils stencils_;
 };
 
-class NlBound final : public Constraint {
+/// Bounds of variables as one constraint, c = x_i - its bound, the lower one where it has both.
+class NlBounds final : public Constraint {
  public:
-  NlBound(const NlModel& model, int variable)
-      : model_(model), variable_(variable), set_(1, model.lower()[variable], model.upper()[variable]) {
-    stencils_.add(std::array{variable});
+  /// All of them have the same distance between their bounds, or only lower or only upper ones.
+  NlBounds(const NlModel& model, std::vector<int> variables)
+      : model_(model), variables_(std::move(variables)), set_(set_of(model, variables_.front())) {
+    for (const int variable : variables_) stencils_.add(std::array{variable});
   }
-  std::string name() const override { return "bounds of " + model_.variable_name(variable_); }
+  std::string name() const override {
+    return variables_.size() == 1 ? "bounds of " + model_.variable_name(variables_.front()) : "bounds";
+  }
   const Stencils& stencils() const override { return stencils_; }
   int rows() const override { return 1; }
   const ConvexSet& set() const override { return set_; }
-  void evaluate(Index, const double* x, double* c, double* jacobian) const override {
-    *c = *x;
+  void evaluate(Index element, const double* x, double* c, double* jacobian) const override {
+    const int variable = variables_[static_cast<std::size_t>(element)];
+    const double lower = model_.lower()[variable];
+    *c = *x - (std::isfinite(lower) ? lower : model_.upper()[variable]);
     if (jacobian) *jacobian = 1;
   }
   void hessian(Index, const double*, const double*, Curvature, double* hessian) const override { *hessian = 0; }
-  double violation(Index, const double* x) const override {
-    return std::max({0.0, model_.lower()[variable_] - *x, *x - model_.upper()[variable_]});
+  double violation(Index element, const double* x) const override {
+    const int variable = variables_[static_cast<std::size_t>(element)];
+    return std::max({0.0, model_.lower()[variable] - *x, *x - model_.upper()[variable]});
   }
-  std::string element_name(Index) const override { return "variable " + model_.variable_name(variable_); }
+  std::string element_name(Index element) const override {
+    return "variable " + model_.variable_name(variables_[static_cast<std::size_t>(element)]);
+  }
+
+  /// What may be one constraint: the distance between the bounds; infinite with a sign where there is only the lower
+  /// one, or only the upper.
+  static double family(const NlModel& model, int variable) {
+    return std::isfinite(model.lower()[variable]) ? model.upper()[variable] - model.lower()[variable]
+                                                  : -std::numeric_limits<double>::infinity();
+  }
 
  private:
+  static Box set_of(const NlModel& model, int variable) {
+    const double width = family(model, variable);
+    return width > 0 ? Box(1, 0, width) : Box(1, width, 0);
+  }
+
   const NlModel& model_;
-  int variable_;
+  std::vector<int> variables_;
   Box set_;
   Stencils stencils_{1};
 };
 
 /// Beyond this a dense matrix of second derivatives takes more memory and time than anyone has.
 constexpr std::size_t largest_width = 4000;
+/// A wider nonlinear objective is taken apart into terms, and bounds are families with one penalty, where that can be
+/// done.
+constexpr int largest_small_width = max_stencil_width;
 
 void check_width(const NlModel& model, int function, const std::string& what) {
   const std::size_t width = model.variables_of(function).size();
@@ -152,17 +206,29 @@ NlProblem::NlProblem(const NlModel& model) : model_(model) {
   problem_.topology = new_topology();
   problem_.initial_guess = model.start();
   check_bounds(model);
+  const double sign = model.maximise() ? -1 : 1;
+  std::vector<NlTerm> terms;
+  if (model.has_objective() && !model.linear(NlModel::objective) &&
+      model.variables_of(NlModel::objective).size() > largest_small_width)
+    terms = objective_terms(model.file(), largest_small_width);
   std::vector<double> fixed;
+  std::map<double, std::vector<int>> families;
   for (int i = 0; i < model.variables(); ++i) {
     const double lower = model.lower()[i], upper = model.upper()[i];
     if (lower == upper) {
       problem_.fixed_variables.push_back(i);
       fixed.push_back(lower);
     } else if (std::isfinite(lower) || std::isfinite(upper)) {
-      constraints_.push_back(std::make_unique<NlBound>(model, i));
+      if (terms.empty()) {
+        constraints_.push_back(std::make_unique<NlBounds>(model, std::vector{i}));
+      } else {
+        families[NlBounds::family(model, i)].push_back(i);
+      }
     }
     problem_.initial_guess[i] = std::clamp(problem_.initial_guess[i], lower, upper);
   }
+  for (auto& [distance, variables] : families)
+    constraints_.push_back(std::make_unique<NlBounds>(model, std::move(variables)));
   problem_.fixed_values = Eigen::Map<const Vector>(fixed.data(), static_cast<Index>(fixed.size()));
   for (int row = 0; row < model.rows(); ++row) {
     check_width(model, row, "row " + model.row_name(row));
@@ -176,8 +242,20 @@ NlProblem::NlProblem(const NlModel& model) : model_(model) {
     if (constraint_of_row_.back() >= 0) constraints_.push_back(std::make_unique<NlRow>(model, row, row_scale_.back()));
   }
   if (model.has_objective() && !model.variables_of(NlModel::objective).empty()) {
-    check_width(model, NlModel::objective, "the objective");
-    energies_.push_back(std::make_unique<NlObjective>(model));
+    if (terms.empty()) {
+      check_width(model, NlModel::objective, "the objective");
+      energies_.push_back(std::make_unique<NlObjective>(model));
+    }
+    std::map<std::size_t, NlTerms*> by_width;
+    for (NlTerm& term : terms) {
+      NlTerms*& same = by_width[term.variables.size()];
+      if (!same) {
+        auto made = std::make_unique<NlTerms>(static_cast<int>(term.variables.size()), sign);
+        same = made.get();
+        energies_.push_back(std::move(made));
+      }
+      same->add(std::move(term));
+    }
     Vector x = problem_.initial_guess(model.variables_of(NlModel::objective)), gradient(x.size());
     model.evaluate(NlModel::objective, x.data(), gradient.data(), nullptr);
     const double largest = gradient.lpNorm<Eigen::Infinity>();
@@ -216,6 +294,21 @@ Vector NlProblem::dual(const Result& result) const {
         sign * row_scale_[row] * result.multipliers[static_cast<std::size_t>(constraint_of_row_[row])][0];
   }
   return dual;
+}
+
+WarmStart NlProblem::warm() const {
+  WarmStart warm;
+  const Vector& dual = model_.start_dual();
+  if (dual.isZero(0)) return warm;
+  for (const auto& constraint : constraints_)
+    warm.multipliers.push_back(Vector::Zero(constraint->stencils().count() * constraint->rows()));
+  const double sign = model_.maximise() ? 1 : -1;
+  for (std::size_t row = 0; row < constraint_of_row_.size(); ++row) {
+    if (constraint_of_row_[row] >= 0)
+      warm.multipliers[static_cast<std::size_t>(constraint_of_row_[row])][0] =
+          sign * dual[static_cast<Index>(row)] / row_scale_[row];
+  }
+  return warm;
 }
 
 }  // namespace taut

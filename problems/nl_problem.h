@@ -6,6 +6,7 @@
 
 #include "core/problem.h"
 #include "core/result.h"
+#include "core/solver.h"
 #include "problems/nl_model.h"
 
 namespace taut {
@@ -29,6 +30,8 @@ class NlProblem {
   std::string name_of(const std::string& node) const;
   /// The rate of the objective in each row's bound, as AMPL reports it.
   Vector dual(const Result& result) const;
+  /// The model's first guess at them as multipliers; empty where it has none.
+  WarmStart warm() const;
 
  private:
   const NlModel& model_;

@@ -12,6 +12,7 @@
 #include "problems/hash.h"
 #include "problems/scene_from_json.h"
 #include "problems/schema.h"
+#include "problems/solver_from_json.h"
 
 namespace taut {
 
@@ -137,7 +138,7 @@ Scene read_model_settings(const std::filesystem::path& model, const Overrides& o
                            {"additionalProperties", false},
                            {"properties", {{"solver", whole["properties"]["solver"]}}},
                            {"definitions", whole["definitions"]}};
-  Document document = {{"solver", {{"longest_step", 10}, {"starts", 8}}}};
+  Document document = {{"solver", {{"longest_step", 10}, {"newton_finish", true}, {"starts", 8}}}};
   complete(document, schema, source);
   for (const auto& [key, value] : overrides) apply(document, key, value, source);
   complete(document, schema, source);

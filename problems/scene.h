@@ -272,6 +272,7 @@ struct Solver {
   double screening = 4;     ///< 0: none
   int starts = 1;           ///< of a model
   bool conjugate_gradients = false;
+  bool newton_finish = false;
   EqualityForm equalities = EqualityForm::quasi_definite;
   IpoptSettings ipopt;
   NloptSettings nlopt;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "problems/probe_from_json.h"
+#include "problems/solver_from_json.h"
 
 namespace taut {
 
@@ -33,46 +34,9 @@ class SceneReader : public ProbeReader {
     for (std::size_t k = 0; k < result.bodies.size(); ++k) read_modal(json["bodies"], static_cast<int>(k), result);
     for (const auto& [name, value] : json["constraints"].items()) result.constraints.push_back(constraint(name, value));
     for (const auto& [name, value] : json["loads"].items()) result.loads.push_back(load(name, value));
-    result.solver = solver(json["solver"]);
+    result.solver = solver_from_json(json["solver"]);
     result.output = output(json["output"], result.time);
     check_frequencies(result);
-    return result;
-  }
-
-  static scene::Solver solver(const Json& json) {
-    scene::Solver result;
-    result.method = choose<SolverMethod>(json["method"], {{"augmented_lagrangian", SolverMethod::augmented_lagrangian},
-                                                          {"null_space", SolverMethod::null_space},
-                                                          {"alternating", SolverMethod::alternating},
-                                                          {"ipopt", SolverMethod::ipopt},
-                                                          {"nlopt", SolverMethod::nlopt}});
-    const Json& tolerance = json["tolerance"];
-    result.tolerance = {tolerance["stationarity"], tolerance["feasibility"], tolerance["complementarity"]};
-    result.central_path = json["central_path"];
-    result.penalty = json["penalty"];
-    result.penalty_growth = json["penalty_growth"];
-    result.fixed_penalty = json["fixed_penalty"];
-    result.penalised_pins = json["pins"] == "penalised";
-    result.warm_multipliers = json["warm_multipliers"];
-    result.max_outer = json["max_outer"];
-    result.max_newton = json["max_newton"];
-    result.inner_tolerance_factor = json["inner_tolerance_factor"];
-    result.longest_step = json["longest_step"];
-    result.screening = json["screening"];
-    result.starts = json["starts"];
-    result.conjugate_gradients = json["null_space"] == "conjugate_gradients";
-    result.equalities = choose<EqualityForm>(
-        json["equalities"], {{"quasi_definite", EqualityForm::quasi_definite}, {"penalised", EqualityForm::penalised}});
-    result.ipopt = {json["ipopt"]["max_iterations"], json["ipopt"]["warm_start"]};
-    result.nlopt.algorithm =
-        choose<NloptAlgorithm>(json["nlopt"]["algorithm"], {{"slsqp", NloptAlgorithm::slsqp},
-                                                            {"auglag_slsqp", NloptAlgorithm::auglag_slsqp},
-                                                            {"auglag_lbfgs", NloptAlgorithm::auglag_lbfgs},
-                                                            {"auglag_ccsaq", NloptAlgorithm::auglag_ccsaq},
-                                                            {"auglag_tnewton", NloptAlgorithm::auglag_tnewton}});
-    result.nlopt.max_evaluations = json["nlopt"]["max_evaluations"];
-    result.on_failure =
-        choose<OnFailure>(json["on_failure"], {{"stop", OnFailure::stop}, {"continue", OnFailure::proceed}});
     return result;
   }
 
@@ -376,7 +340,5 @@ Scene scene_from_json(const nlohmann::json& document, const std::filesystem::pat
                       const std::string& default_name) {
   return SceneReader(folder, source).read(document, default_name);
 }
-
-scene::Solver solver_from_json(const nlohmann::json& section) { return SceneReader::solver(section); }
 
 }  // namespace taut

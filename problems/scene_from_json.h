@@ -14,7 +14,4 @@ namespace taut {
 Scene scene_from_json(const nlohmann::json& document, const std::filesystem::path& folder, const std::string& source,
                       const std::string& default_name);
 
-/// The section `solver` of such a document.
-scene::Solver solver_from_json(const nlohmann::json& section);
-
 }  // namespace taut

@@ -202,8 +202,9 @@ void AugmentedLagrangian::Run::loop() {
       best_judged = judged;
     }
     if (judged.within(options.tolerances)) return finish(Status::solved, "residuals within tolerance");
-    // The path that was lost far away may be found from here.
-    if (judged.within({near, near, near})) {
+    if (newton_finish()) return finish(Status::solved, "residuals within tolerance, by Newton steps on all of them");
+    // The path that was lost far away may be found from here. (In models Newton's finish serves better: docs/theory.)
+    if (!options.newton_finish && judged.within({near, near, near})) {
       near *= 1e-2;
       if (central_path()) return finish(Status::solved, "residuals within tolerance, along the central path");
     }

@@ -33,6 +33,7 @@ struct AugmentedLagrangianOptions {
   double screening = 4;
   CentralPathOptions central_path;  ///< tried first; the loop of multiplier updates takes over where it fails
   NewtonOptions newton;
+  bool newton_finish = false;  ///< Newton steps on the optimality conditions near the solution (newton_finish.cpp)
   void validate() const;
 };
 

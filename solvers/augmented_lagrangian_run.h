@@ -61,6 +61,8 @@ struct AugmentedLagrangian::Run {
   bool penalise(double growth, double tolerance, NewtonState& state);
   bool closest_compromise(NewtonState& state);
   bool central_path();
+  bool newton_finish();
+  bool newton_step();
   void loop();
 };
 

@@ -136,6 +136,12 @@ bool AugmentedLagrangian::Run::central_path() {
         if (judged.within(options.tolerances)) return judged.over(options.tolerances);
         for (std::size_t k = 0; k < work.slacks.size(); ++k) keep_significant(work.slacks[k], result.multipliers[k]);
         judged = judge(result.multipliers);
+        if (!options.newton_finish || judged.within(options.tolerances)) return judged.over(options.tolerances);
+        using Linearisation = EliminatedSlack::Linearisation;
+        for (EliminatedSlack& slack : work.slacks) slack.set_linearisation(Linearisation::augmented_lagrangian);
+        const bool finished = newton_finish();
+        for (EliminatedSlack& slack : work.slacks) slack.set_linearisation(Linearisation::central_path);
+        if (!finished) work.assembly.hessian(candidate, Curvature::positive_semidefinite);  // the path's again
         return judged.over(options.tolerances);
       },
       observer ? [&](const Vector& now) { show(now, equal); } : std::function<void(const Vector&)>(), budget,

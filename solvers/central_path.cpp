@@ -137,7 +137,14 @@ class CentralPath {
     const bool exact = steps_ >= options_.exact_after && --wait_ < 0;
     curvature_ = exact ? Curvature::exact : Curvature::positive_semidefinite;
     assembly_.hessian(x, curvature_, &gradient_);
+    complete_gradient();
     matrix_is_here_ = true;
+  }
+
+  /// What the assembly knows nothing of: the forces of the equalities, and which of all forces count.
+  void complete_gradient() {
+    equalities_.add_force(equal_, gradient_);
+    for (int variable : fixed_) gradient_[variable] = 0;
   }
 
   bool centred() const { return worst_mismatch_ <= options_.centred * width_; }
@@ -164,13 +171,10 @@ class CentralPath {
     } else {
       const Stopwatch watch(timings_.assembly);
       assembly_.gradient(x, gradient_);
+      complete_gradient();
     }
     equalities_.violation(x, violation_);
-    if (equalities_.count() > 0) {
-      equalities_.add_force(equal_, gradient_);
-      merit_ += violation_.squaredNorm() / x.squaredNorm();
-    }
-    for (int variable : fixed_) gradient_[variable] = 0;
+    if (equalities_.count() > 0) merit_ += violation_.squaredNorm() / x.squaredNorm();
     force_ = nodal_max_norm(gradient_, node_size_);
     merit_ += gradient_.squaredNorm() / (force_scale_ * force_scale_);
   }

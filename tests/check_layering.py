@@ -46,6 +46,7 @@ THIRD_PARTY = [
     ("nlopt.h", ("solvers/nlopt.cpp",)),
     ("Spectra/*", ("src/dynamics/modal/eigen_solver.cpp",)),
     ("asl*.h", ("problems/nl_model.cpp",)),
+    ("nlp.h", ("problems/nl_split.cpp",)),
     ("malloc.h", ("src/cli/main.cpp",)),
     ("CLI/*", ("src/cli/*.cpp",)),
     ("spdlog/*", ("src/cli/*.cpp",)),

@@ -13,7 +13,7 @@
 #include "cli/stop_signals.h"
 #include "problems/nl_model.h"
 #include "report/model_report.h"
-#include "report/terminal_summary.h"
+#include "report/model_summary.h"
 #include "study/records_json.h"
 #include "study/solve_model.h"
 
@@ -88,8 +88,7 @@ int solve_model_file(const ModelArguments& arguments) {
   if (!arguments.out.empty()) write_model_solution(arguments.out, model, solution);
   const std::string text = arguments.json    ? summary_text(solution.summary)
                            : arguments.quiet ? ""
-                                             : fmt::format("objective {:.10g}\n", solution.summary.objective) +
-                                                   terminal_summary(solution.summary, arguments.out);
+                                             : model_summary(solution, arguments.out);
   const bool printed = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
   if (arguments.report.wanted())
     arguments.report.write(model_report(model, solution, settings, typed_command()), arguments.quiet);

@@ -52,11 +52,11 @@ bool better(const Problem& problem, const Result& result, const Result& than) {
 }
 
 /// The best result from the model's start and, so that a nonconvex model has more than one chance, others.
-Result solve(const NlModel& model, const Problem& posed, const Scene& settings, const Budget& budget,
-             std::string& solver_name) {
+Result solve(const NlModel& model, const Problem& posed, const WarmStart& warm, const Scene& settings,
+             const Budget& budget, std::string& solver_name) {
   const std::unique_ptr<Solver> solver = build_solver(settings, 1);
   solver_name = solver->name();
-  Result best = solver->solve(posed, {}, budget);
+  Result best = solver->solve(posed, warm, budget);
   Counts counts = best.counts;
   Timings timings = best.timings;
   Problem problem = posed;
@@ -84,7 +84,7 @@ ModelSolution solve_model(const NlModel& model, const Scene& settings, const Bud
     const Stopwatch watch(summary.seconds.total);
     const NlProblem posed(model);
     const Problem& problem = posed.problem();
-    Result result = solve(model, problem, settings, budget, summary.solver);
+    Result result = solve(model, problem, posed.warm(), settings, budget, summary.solver);
     StepRecord record;
     record.step = 1;
     {
@@ -92,6 +92,11 @@ ModelSolution solve_model(const NlModel& model, const Scene& settings, const Bud
       record.residuals = residuals(problem, result);
     }
     record.residuals.worst_node = posed.name_of(record.residuals.worst_node);
+    if (!problem.fixed_variables.empty()) {
+      Violation& fixed = record.residuals.violations.back();  // which the residuals call pins
+      fixed.constraint = "fixed variables";
+      fixed.where = posed.name_of(fixed.where);
+    }
     record.objective = posed.objective(result.x);
     record.status = result.status;
     record.message = result.message;
@@ -110,6 +115,7 @@ ModelSolution solve_model(const NlModel& model, const Scene& settings, const Bud
     record.seconds = result.timings;
     summary.steps_asked = 1;
     add_step(summary, record);
+    if (record.status != Status::solved) summary.message = record.message;  // there is no other step to tell it from
     summary.worst_elements = worst_elements(problem, result.x, worst_elements_kept);
     summary.worst_elements_step = 1;
     solution.dual = posed.dual(result);

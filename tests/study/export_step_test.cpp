@@ -30,24 +30,25 @@ std::string catalogue(const std::string& name) { return std::string(TAUT_CATALOG
 
 class ExportStep : public FilesTest {
  protected:
-  /// Solves the steps before `step`, exports that one, solves it both ways and compares.
-  void expect_same_optimum(const Scene& scene, int step) {
+  /// Solves the steps before `step`, exports that one, solves it both ways and compares. Returns the multipliers of the
+  /// largest norm, of each constraint and then of each system of equalities.
+  std::vector<double> expect_same_optimum(const Scene& scene, int step) {
     const auto model = build_model(scene);
     Stepper stepper(*model, time_options(scene));
     const auto solver = build_solver(scene, 1);
     for (int k = 1; k < step; ++k) {
       const Result result = solver->solve(stepper.prepare(), stepper.state().warm, {});
-      ASSERT_EQ(result.status, Status::solved) << "step " << k << ": " << result.message;
+      EXPECT_EQ(result.status, Status::solved) << "step " << k << ": " << result.message;
       stepper.accept(result);
     }
     export_step(scene, *model, stepper).write(path("step.nl"));
     const Problem& problem = stepper.prepare();
     const Result native = solver->solve(problem, stepper.state().warm, {});
-    ASSERT_EQ(native.status, Status::solved) << native.message;
+    EXPECT_EQ(native.status, Status::solved) << native.message;
     const double optimum = objective(problem, native.x);
 
     const NlModel read(path("step.nl"));
-    ASSERT_EQ(read.variables(), problem.size());
+    EXPECT_EQ(read.variables(), problem.size());
     EXPECT_EQ(read.start(), problem.initial_guess);
     for (const std::string method : {"augmented_lagrangian", "ipopt"}) {
 #ifndef TAUT_WITH_IPOPT
@@ -62,6 +63,9 @@ class ExportStep : public FilesTest {
       EXPECT_NEAR(solution.summary.objective, optimum, 1e-8 * std::abs(optimum)) << method;
       EXPECT_LE((solution.x - native.x).lpNorm<Eigen::Infinity>(), 1e-6) << method;
     }
+    std::vector<double> largest;
+    for (const Vector& multipliers : native.multipliers) largest.push_back(multipliers.lpNorm<Eigen::Infinity>());
+    return largest;
   }
   std::string refusal(const Scene& scene) {
     const auto model = build_model(scene);
@@ -105,6 +109,30 @@ TEST_F(ExportStep, CoverOnItsShell) {
   })";
   // The weight on the floor, 1 N, times a violation of 1e-9 m would show in the objective.
   expect_same_optimum(read_scene(path("cover.json"), tight + Overrides{{"solver.tolerance.feasibility", "1e-12"}}), 3);
+}
+
+TEST_F(ExportStep, CoverAtItsStrainLimit) {
+  std::ofstream(path("stretched.json")) << R"({
+    "format": 1,
+    "time": { "integrator": "implicit_euler", "step": 0.01, "steps": 12 },
+    "gravity": [0, 0, -9.81],
+    "bodies": { "sheet": {
+      "model": "wrinkled_shell", "mesh": { "grid": { "size": [0.4, 0.4], "cells": [2, 2] } },
+      "thickness": 0.001, "density": 300,
+      "membrane": { "law": "stvk", "young_modulus": 2e3, "poisson_ratio": 0.3 }, "bending": { "stiffness": 1e-05 },
+      "cover": {
+        "mesh": { "refine": 1 }, "thickness": 0.0003, "density": 470,
+        "membrane": { "law": "stvk", "young_modulus": 2e3, "poisson_ratio": 0.3 }, "bending": { "stiffness": 2e-06 },
+        "imperfection": { "amplitude": 2e-4, "seed": 1 } } } },
+    "constraints": {
+      "held": { "type": "pin", "body": "sheet", "select": { "corners": ["x0y0", "x1y1"] } },
+      "limit": { "type": "strain_limit", "body": "sheet/cover", "max": 1.01 } }
+  })";
+  const std::vector<double> multipliers = expect_same_optimum(
+      read_scene(path("stretched.json"), tight + Overrides{{"solver.tolerance.feasibility", "1e-12"}}), 12);
+  ASSERT_EQ(multipliers.size(), 2u);
+  EXPECT_GT(multipliers[0], 0.1) << "the limit is active, N/m";
+  EXPECT_GT(multipliers[1], 0.1) << "the cover pulls at its shell, N";
 }
 
 TEST_F(ExportStep, RefusesByNameWhatItCannotWrite) {
