@@ -51,8 +51,11 @@ class CentralPath {
   double width() const { return width_; }
   double force() const { return force_; }
   double merit() const { return merit_; }
-  /// True after a dozen steps in a row that the merit function cut short: the path is lost.
-  bool lost() const { return short_steps_ >= 12; }
+  /// True after a dozen steps in a row that the merit function cut short, and where half of all steps have not brought
+  /// the forces near a balance: the path is lost.
+  bool lost() const {
+    return short_steps_ >= 12 || (2 * steps_ >= options_.max_iterations && force_ > 0.01 * force_scale_);
+  }
 
   /// Solves for the step in x, multipliers and width; false where the matrix is not positive definite.
   bool step(const Vector& x) {
