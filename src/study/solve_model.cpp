@@ -51,6 +51,9 @@ bool better(const Problem& problem, const Result& result, const Result& than) {
   return value(result) < old - 1e-6 * std::max(1.0, std::abs(old));
 }
 
+/// Variables above which a solved start is enough: random ones are hardly ever better, and cost as much each.
+constexpr Index many_variables = 1000;
+
 /// The best result from the model's start and, so that a nonconvex model has more than one chance, others.
 Result solve(const NlModel& model, const Problem& posed, const WarmStart& warm, const Scene& settings,
              const Budget& budget, std::string& solver_name) {
@@ -62,6 +65,7 @@ Result solve(const NlModel& model, const Problem& posed, const WarmStart& warm, 
   Problem problem = posed;
   std::mt19937 random(1);
   for (int number = 1; number < settings.solver.starts; ++number) {
+    if (best.status == Status::solved && problem.size() > many_variables) break;
     if (best.status == Status::unbounded || budget.interrupted() || budget.out_of_time()) break;
     problem.initial_guess = another_start(model, posed.initial_guess, number, random);
     Result result = solver->solve(problem, {}, budget);

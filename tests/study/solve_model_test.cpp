@@ -184,6 +184,8 @@ TEST_F(WideModel, TenThousandVariablesTakeTheLinearSystemsOfAHundred) {
   EXPECT_EQ(many.summary.status, Status::solved) << many.summary.message;
   EXPECT_LE((many.x - Vector::Ones(10000)).lpNorm<Eigen::Infinity>(), 1e-6);
   EXPECT_EQ(many.summary.counts.linear_solves, few.summary.counts.linear_solves);
+  const ModelSolution by_default = solve_file(extended_rosenbrock(10000), {});
+  EXPECT_EQ(by_default.summary.counts.linear_solves, many.summary.counts.linear_solves) << "no other starts";
 }
 
 TEST_F(WideModel, AStringOverAnObstacleIsStraightOnBothSides) {
