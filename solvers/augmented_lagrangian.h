@@ -23,7 +23,7 @@ struct AugmentedLagrangianOptions {
   int threads = 1;
   EqualityForm equalities = EqualityForm::quasi_definite;
   /// How pins and linear equalities are kept: substituted and as rows with multipliers; or in the null space of their
-  /// equations (null_space_system.h), without the central path, as a check of the former.
+  /// equations (null_space_system.h), as a check of the former.
   bool null_space = false;
   bool conjugate_gradients = false;  ///< in the null space: without a matrix of its own, where its factor fills in
   double fixed_penalty = 0;      ///< positive: every constraint's penalty, which then never grows and is no multiple

@@ -41,7 +41,7 @@ Lines solvers() {
        "slacks eliminated by projection, semismooth Newton inside, sparse Cholesky; multipliers carried from step to "
        "step"},
       {"null_space",
-       "the same multiplier loop with pins kept in the null space of their equations and another factorisation: a "
+       "the same with pins kept in the null space of their equations and another factorisation: a "
        "check"},
       {"alternating",
        "a cover and its shell in turn, with a penalty and multipliers between them: a comparison, for scenes with "
