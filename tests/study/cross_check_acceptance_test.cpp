@@ -42,7 +42,9 @@ TEST_P(EveryStep, HasOneSolutionForThreeMethods) {
     EXPECT_LE(apart, GetParam().two_minima) << run.label;
     EXPECT_LE(lost, GetParam().lost) << run.label;
     // Where Ipopt's rows have no multipliers its positions may be right, and their residual is not.
-    if (!is_ipopt) EXPECT_LE(summary.residual, 1e-6) << run.label;
+    if (!is_ipopt) {
+      EXPECT_LE(summary.residual, 1e-6) << run.label;
+    }
   }
 }
 
