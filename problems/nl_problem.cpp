@@ -26,6 +26,14 @@ void make_positive_semidefinite(double* entries, Index width) {
   hessian = solver.eigenvectors() * solver.eigenvalues().cwiseAbs().asDiagonal() * solver.eigenvectors().transpose();
 }
 
+/// A function's value and derivatives as those of an energy: negated where it is maximised.
+double as_energy(double value, double sign, Index width, double* gradient, double* hessian, Curvature curvature) {
+  if (sign < 0 && gradient) Eigen::Map<Vector>(gradient, width) *= -1;
+  if (sign < 0 && hessian) Eigen::Map<Vector>(hessian, width * width) *= -1;
+  if (hessian && curvature == Curvature::positive_semidefinite) make_positive_semidefinite(hessian, width);
+  return sign * value;
+}
+
 class NlObjective final : public Energy {
  public:
   explicit NlObjective(const NlModel& model)
@@ -39,11 +47,7 @@ class NlObjective final : public Energy {
   bool has_curvature() const override { return !model_.linear(NlModel::objective); }
   double evaluate(Index, const double* x, double* gradient, double* hessian, Curvature curvature) const override {
     const double value = model_.evaluate(NlModel::objective, x, gradient, hessian);
-    const Index width = stencils_.width();
-    if (sign_ < 0 && gradient) Eigen::Map<Vector>(gradient, width) *= -1;
-    if (sign_ < 0 && hessian) Eigen::Map<Vector>(hessian, width * width) *= -1;
-    if (hessian && curvature == Curvature::positive_semidefinite) make_positive_semidefinite(hessian, width);
-    return sign_ * value;
+    return as_energy(value, sign_, stencils_.width(), gradient, hessian, curvature);
   }
 
  private:
@@ -65,11 +69,7 @@ class NlTerms final : public Energy {
   double evaluate(Index element, const double* x, double* gradient, double* hessian,
                   Curvature curvature) const override {
     const double value = terms_[static_cast<std::size_t>(element)].evaluate(x, gradient, hessian);
-    const Index width = stencils_.width();
-    if (sign_ < 0 && gradient) Eigen::Map<Vector>(gradient, width) *= -1;
-    if (sign_ < 0 && hessian) Eigen::Map<Vector>(hessian, width * width) *= -1;
-    if (hessian && curvature == Curvature::positive_semidefinite) make_positive_semidefinite(hessian, width);
-    return sign_ * value;
+    return as_energy(value, sign_, stencils_.width(), gradient, hessian, curvature);
   }
 
  private:
