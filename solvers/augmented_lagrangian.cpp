@@ -7,6 +7,7 @@
 #include "core/stopwatch.h"
 #include "solvers/augmented_lagrangian_run.h"
 #include "solvers/null_space_system.h"
+#include "solvers/preconditioned_system.h"
 
 namespace taut {
 
@@ -58,9 +59,14 @@ AugmentedLagrangian::Workspace::Workspace(const Problem& problem, const Augmente
   } else if (equalities.count() > 0) {
     system = std::make_unique<QuasiDefiniteSystem>(assembly, equalities, problem.fixed_variables);
   } else {
-    assembly.set_order(fill_reducing_order(assembly.graph()));
+    const std::vector<int> order = fill_reducing_order(assembly.graph());
+    assembly.set_order(order);
     cholesky = std::make_unique<Cholesky>(assembly.matrix(), options.threads);
-    system = std::make_unique<SubstitutedSystem>(assembly, *cholesky);
+    if (PreconditionedSystem::pays(assembly)) {
+      system = std::make_unique<PreconditionedSystem>(assembly, order, *cholesky, options.threads);
+    } else {
+      system = std::make_unique<SubstitutedSystem>(assembly, *cholesky);
+    }
   }
 }
 
@@ -99,7 +105,7 @@ Status AugmentedLagrangian::Run::inner(NewtonState& state) {
           smallest = 0.5 * options.tolerances.stationarity * judged.force_scale;
         }
         if (now.nodal_norm <= smallest || diverges(now.x)) return true;
-        if (result.counts.linear_solves >= options.max_newton) return true;
+        if (linear_solves() >= options.max_newton) return true;
         scratch.setZero(problem.size());
         for (const EliminatedSlack& slack : work.slacks) slack.add_update_force(now.x, scratch);
         for (int variable : problem.fixed_variables) scratch[variable] = 0;
@@ -210,7 +216,7 @@ void AugmentedLagrangian::Run::loop() {
     }
     if (inner_status == Status::interrupted) return finish(inner_status, "stopped on request");
     if (inner_status == Status::time_limit) return finish(inner_status, "out of time");
-    if (result.counts.outer >= options.max_outer || result.counts.linear_solves >= options.max_newton) {
+    if (result.counts.outer - before_again.outer >= options.max_outer || linear_solves() >= options.max_newton) {
       return finish(Status::iteration_limit, "iterations used up");
     }
     stalls = inner_status == Status::stalled ? stalls + 1 : 0;
@@ -273,19 +279,25 @@ Result AugmentedLagrangian::solve(const Problem& problem, const WarmStart& warm,
       workspace_ = std::make_unique<Workspace>(problem, options_);
       analysed = true;
     }
-    const Index pivoted = workspace_->system->pivoted();
+    NewtonSystem& system = *workspace_->system;
+    const NewtonSystem::Effort before = system.effort();
+    system.start();
     Run run(options_, problem, budget, observer, *workspace_);
     run.solve(warm);
     result = std::move(run.result);
     if (analysed) ++result.counts.symbolic_analyses;
-    result.counts.pivoted_factorizations = workspace_->system->pivoted() - pivoted;
-    if (pivoted == 0 && result.counts.pivoted_factorizations > 0) ++result.counts.symbolic_analyses;
+    const NewtonSystem::Effort after = system.effort();
+    result.counts.pivoted_factorizations = after.pivoted - before.pivoted;
+    result.counts.inner_iterations = after.iterations - before.iterations;
+    result.counts.factor_flops = after.more_flops - before.more_flops;
+    result.counts.factorizations += after.refactorized - before.refactorized;
+    if (before.pivoted == 0 && result.counts.pivoted_factorizations > 0) ++result.counts.symbolic_analyses;
     result.force_scale = run.judged.force_scale;
   }
   result.timings.total = total;
   result.timings.analysis = analysis;
   if (const auto factorizations = static_cast<double>(result.counts.factorizations); factorizations > 0)
-    result.counts.factor_flops = factorizations * size().factor_flops;
+    result.counts.factor_flops += factorizations * size().factor_flops;
   result.counts.matrix_allocations = analysed ? 1 : 0;
   return result;
 }

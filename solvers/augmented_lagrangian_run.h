@@ -37,7 +37,8 @@ struct AugmentedLagrangian::Run {
   std::vector<double> start_penalty;
   std::vector<double> last_violation;
   Vector scratch;
-  Index left_out = 0;  // elements of constraints
+  Index left_out = 0;   // elements of constraints
+  Counts before_again;  // where the solve began again with them
 
   Run(const AugmentedLagrangianOptions& o, const Problem& p, const Budget& b,
       const std::function<void(const Iterate&)>& f, Workspace& w)
@@ -53,6 +54,7 @@ struct AugmentedLagrangian::Run {
   void leave_out(const WarmStart& warm);
   bool left_out_violated() const;
   bool constrained() const;
+  long linear_solves() const { return result.counts.linear_solves - before_again.linear_solves; }
   void show(const Vector& x, const Vector& equal) const;
   Status inner(NewtonState& state);
   bool diverges(const Vector& x) const;

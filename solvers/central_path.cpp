@@ -13,12 +13,16 @@ namespace {
 
 using Linearisation = EliminatedSlack::Linearisation;
 
+/// Of the unbalanced forces. Right-hand sides are no measure: multipliers that do not fit yet make them huge.
+constexpr double left_by_iterations = 0.05;
+
 /// The iteration's data, so that its parts read as what they are.
 class CentralPath {
  public:
   CentralPath(Assembly& assembly, NewtonSystem& system, const EqualityRows& equalities,
               std::deque<EliminatedSlack>& slacks, const std::vector<int>& fixed, int node_size, double force_scale,
-              const CentralPathOptions& options, int threads, Vector& equal, Counts& counts, Timings& timings)
+              double force_tolerance, const CentralPathOptions& options, int threads, Vector& equal, Counts& counts,
+              Timings& timings)
       : assembly_(assembly),
         system_(system),
         equalities_(equalities),
@@ -26,6 +30,7 @@ class CentralPath {
         fixed_(fixed),
         node_size_(node_size),
         force_scale_(force_scale),
+        force_tolerance_(force_tolerance),
         options_(options),
         threads_(threads),
         counts_(counts),
@@ -71,17 +76,12 @@ class CentralPath {
         slack.aim(scaled * scaled, threads_, right_hand_side_);
       }
     }
-    if (!factorize()) {
+    if (!solve()) {
       if (curvature_ != Curvature::exact) return false;
       wait_ = patience_;
       patience_ = std::min(2 * patience_, 64);
       make_matrix(x);
-      if (!factorize()) return false;
-    }
-    {
-      const Stopwatch watch(timings_.solve);
-      ++counts_.linear_solves;
-      system_.solve(right_hand_side_, violation_, step_, equal_step_);
+      if (!solve()) return false;
     }
     const Stopwatch watch(timings_.assembly);
     for (std::size_t k = 0; k < slacks_.size(); ++k) {
@@ -96,12 +96,14 @@ class CentralPath {
   /// Halves the step until the merit does not rise much or the path is near, or takes the best fraction tried. The
   /// first trial is usually taken, so the next matrix is made along with its forces, unless a width of at most
   /// `last_width` makes it likely that there is no next step; where the multipliers' mismatch alone is too large,
-  /// neither is.
+  /// neither is. A path that crawls for six steps takes the next one as it is (a watchdog [Chamberlain et al. 1982]):
+  /// where many elements are at a kink, every short step is an improvement and none gets anywhere.
   void advance(Vector& x, double last_width) {
     const double before = merit_;
     double fraction =
         std::min(believable_fraction(x, step_, options_.longest_step), 0.9 * assembly_.largest_step(x, step_));
     double best_fraction = fraction, best = std::numeric_limits<double>::infinity();
+    const bool unchecked = crawling_ >= 6;
     bool accepted = false;
     for (int halving = 0; halving < options_.max_halvings && !accepted; ++halving) {
       if (halving > 0) fraction *= 0.5;
@@ -109,10 +111,10 @@ class CentralPath {
       move(x, fraction);
       // A shorter width raises the merit of a point that was on the path.
       const bool may_be_near = target_width_ < start_width_ && centred();
-      if (merit_ <= tolerated || may_be_near) {
+      if (unchecked || merit_ <= tolerated || may_be_near) {
         measure_forces(trial_, halving == 0 && width_ > last_width);
         const bool near = may_be_near && force_ <= width_ * force_scale_;
-        accepted = merit_ <= tolerated || (near && std::isfinite(merit_));
+        accepted = merit_ <= tolerated || ((unchecked || near) && std::isfinite(merit_));
       }
       if (merit_ < best || accepted) {
         best = merit_;
@@ -124,14 +126,22 @@ class CentralPath {
       measure_forces(trial_, false);
     }
     short_steps_ = best_fraction < 0.2 ? short_steps_ + 1 : 0;
+    crawling_ = best_fraction < 0.3 ? crawling_ + 1 : 0;
     std::swap(x, trial_);
   }
 
  private:
-  bool factorize() {
-    const Stopwatch watch(timings_.factorization);
-    ++counts_.factorizations;
-    return system_.factorize(0);
+  /// False where the matrix is not positive definite.
+  bool solve() {
+    {
+      const Stopwatch watch(timings_.factorization);
+      ++counts_.factorizations;
+      if (!system_.factorize(0)) return false;
+    }
+    const Stopwatch watch(timings_.solve);
+    ++counts_.linear_solves;
+    system_.allow(left_by_iterations * std::max(gradient_.norm(), 0.1 * force_tolerance_));
+    return system_.solve(right_hand_side_, violation_, step_, equal_step_);
   }
 
   /// The semidefinite matrix, or late on the path the exact one, where it was not indefinite lately.
@@ -199,14 +209,14 @@ class CentralPath {
   std::deque<EliminatedSlack>& slacks_;
   const std::vector<int>& fixed_;
   int node_size_;
-  double force_scale_;
+  double force_scale_, force_tolerance_;
   const CentralPathOptions& options_;
   int threads_;
   Counts& counts_;
   Timings& timings_;
   Vector& equal_;
   Vector equal_step_, start_equal_, violation_;
-  int short_steps_ = 0;
+  int short_steps_ = 0, crawling_ = 0;
   double width_ = 0, start_width_ = 0, target_width_ = 0;
   double force_ = 0, worst_mismatch_ = 0, merit_ = 0;
   bool matrix_is_here_ = false;
@@ -237,11 +247,11 @@ bool follow_central_path(Assembly& assembly, NewtonSystem& system, const Equalit
                          int threads, Vector& x, Vector& equal, const std::function<double(const Vector&)>& judge,
                          const std::function<void(const Vector&)>& observe, const Budget& budget, Counts& counts,
                          Timings& timings) {
-  CentralPath path(assembly, system, equalities, slacks, fixed, node_size, force_scale, options, threads, equal, counts,
-                   timings);
+  const double force_tolerance = tolerances.stationarity * force_scale;
+  CentralPath path(assembly, system, equalities, slacks, fixed, node_size, force_scale, force_tolerance, options,
+                   threads, equal, counts, timings);
   path.start(x);
   bool accepted = false;
-  const double force_tolerance = tolerances.stationarity * force_scale;
   // The residuals are about as small as the width, and shrink as it does.
   double ask_below =
       std::max(10 * std::min({tolerances.stationarity, tolerances.feasibility, tolerances.complementarity}),

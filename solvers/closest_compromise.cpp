@@ -24,7 +24,7 @@ bool AugmentedLagrangian::Run::penalise(double growth, double tolerance, NewtonS
         }
         work.equalities.put(now.multipliers, work.slacks.size(), probe.multipliers);
         scale = residuals(problem, probe).force_scale;
-        return now.nodal_norm <= tolerance * scale || result.counts.linear_solves >= options.max_newton;
+        return now.nodal_norm <= tolerance * scale || linear_solves() >= options.max_newton;
       },
       budget, result.counts, result.timings);
   for (EliminatedSlack& slack : work.slacks) {

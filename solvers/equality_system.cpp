@@ -85,7 +85,7 @@ bool EqualitySystem::factorize(double shift) {
   return factorize_penalised(shift);
 }
 
-void EqualitySystem::solve(const Vector& gradient, const Vector& violation, Vector& step, Vector& multiplier_step) {
+bool EqualitySystem::solve(const Vector& gradient, const Vector& violation, Vector& step, Vector& multiplier_step) {
   assembly_.to_ordered(gradient, ordered_);
   dx_.setZero(ordered_.size());
   dnu_.setZero(violation.size());
@@ -107,6 +107,7 @@ void EqualitySystem::solve(const Vector& gradient, const Vector& violation, Vect
   }
   assembly_.from_ordered(dx_, step);
   multiplier_step = dnu_;
+  return true;
 }
 
 QuasiDefiniteSystem::QuasiDefiniteSystem(const Assembly& assembly, const EqualityRows& equalities,

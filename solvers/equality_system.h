@@ -17,7 +17,7 @@ namespace taut {
 class EqualitySystem : public NewtonSystem {
  public:
   bool factorize(double shift) final;
-  void solve(const Vector& gradient, const Vector& violation, Vector& step, Vector& multiplier_step) final;
+  bool solve(const Vector& gradient, const Vector& violation, Vector& step, Vector& multiplier_step) final;
 
  protected:
   /// All is borrowed. The assembly is in its final order, which QuasiDefiniteSystem wants to be the natural one.
@@ -50,7 +50,7 @@ class QuasiDefiniteSystem final : public EqualitySystem {
   /// Of the last matrix on A dx = 0; nothing where it was singular.
   std::optional<Index> negative_curvatures() const { return negative_curvatures_; }
   Size size() const override;
-  Index pivoted() const override { return pivoted_; }
+  Effort effort() const override { return {.pivoted = pivoted_}; }
 
  private:
   bool factorize_penalised(double shift) override;

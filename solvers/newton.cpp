@@ -10,6 +10,8 @@ namespace taut {
 
 namespace {
 const EqualityRows no_equalities;
+/// Of the forces. Newton takes what is left in its next step.
+constexpr double left_by_iterations = 1e-5;
 }  // namespace
 
 void NewtonOptions::validate() const {
@@ -36,13 +38,14 @@ double nodal_max_norm(const Vector& force, int node_size) {
   return std::sqrt(largest);
 }
 
-void SubstitutedSystem::solve(const Vector& gradient, const Vector& /*violation*/, Vector& step,
+bool SubstitutedSystem::solve(const Vector& gradient, const Vector& /*violation*/, Vector& step,
                               Vector& multiplier_step) {
   multiplier_step.resize(0);
   assembly_.to_ordered(gradient, right_hand_side_);
   cholesky_.solve(right_hand_side_, solution_);
   assembly_.from_ordered(solution_, step);
   step = -step;
+  return true;
 }
 
 Newton::Newton(Assembly& assembly, NewtonSystem& system, const EqualityRows& equalities, const std::vector<int>& fixed,
@@ -70,13 +73,14 @@ void Newton::evaluate(NewtonState& state, Counts& counts, Timings& timings) {
   state.nodal_norm = nodal_max_norm(state.gradient, node_size_);
 }
 
-/// The exact Hessian that the assembly holds, shifted as little as makes it positive definite; false where the shift
-/// would be larger than its diagonal. The last shift, a third of it, is tried first [Waechter and Biegler 2006, 3.1].
-bool Newton::factorize_shifted(const std::function<bool(double)>& factorize) {
+/// The step of the exact Hessian that the assembly holds, shifted as little as makes it positive definite; false where
+/// the shift would be larger than its diagonal. The last shift, a third of it, is tried first [Waechter and Biegler
+/// 2006, 3.1].
+bool Newton::shifted_step(const std::function<bool(double)>& solve) {
   const double unit = assembly_.matrix().diagonal().cwiseAbs().mean();
   double shift = shift_ > 1e-5 * unit ? shift_ / 3 : 0;
   for (shift_ = 0; shift <= unit; shift = std::max(4 * shift, 1e-4 * unit)) {
-    if (!factorize(shift)) continue;
+    if (!solve(shift)) continue;
     shift_ = shift;
     return true;
   }
@@ -85,10 +89,16 @@ bool Newton::factorize_shifted(const std::function<bool(double)>& factorize) {
 
 /// Solves H step = -gradient with the best Hessian that is positive definite; false where none is found.
 bool Newton::direction(const NewtonState& state, Counts& counts, Timings& timings) {
-  const auto factorize = [&](double shift) {
-    const Stopwatch watch(timings.factorization);
-    ++counts.factorizations;
-    return system_.factorize(shift);
+  const auto solve = [&](double shift) {
+    {
+      const Stopwatch watch(timings.factorization);
+      ++counts.factorizations;
+      if (!system_.factorize(shift)) return false;
+    }
+    const Stopwatch watch(timings.solve);
+    ++counts.linear_solves;
+    system_.allow(left_by_iterations * state.gradient.norm());
+    return system_.solve(state.gradient, state.violation, step_, multiplier_step_);
   };
   const auto assemble = [&](Curvature curvature) {
     const Stopwatch watch(timings.assembly);
@@ -98,7 +108,7 @@ bool Newton::direction(const NewtonState& state, Counts& counts, Timings& timing
   bool positive = false;
   if (try_exact) {
     assemble(Curvature::exact);
-    positive = equalities_.count() > 0 ? factorize_shifted(factorize) : factorize(0);
+    positive = equalities_.count() > 0 ? shifted_step(solve) : solve(0);
     curvature_ = positive ? Curvature::exact : Curvature::positive_semidefinite;
     if (!positive) {
       wait_ = patience_;
@@ -108,21 +118,17 @@ bool Newton::direction(const NewtonState& state, Counts& counts, Timings& timing
   if (!positive) {
     --wait_;
     assemble(Curvature::positive_semidefinite);
-    positive = factorize(0);
+    positive = solve(0);
     double shift = 0;
     for (int attempt = 0; !positive && attempt < 12; ++attempt) {
       // Relative to the stiffest entry: 1e-10, 1e-9, ... Where all are zero, the gradient is followed.
       const double stiffest = assembly_.matrix().coeffs().abs().maxCoeff();
       shift = shift > 0 ? 10 * shift : 1e-10 * (stiffest > 0 ? stiffest : 1.0);
       if (!std::isfinite(shift)) return false;
-      positive = factorize(shift);
+      positive = solve(shift);
     }
   }
-  if (!positive) return false;
-  const Stopwatch watch(timings.solve);
-  ++counts.linear_solves;
-  system_.solve(state.gradient, state.violation, step_, multiplier_step_);
-  return step_.allFinite() && multiplier_step_.allFinite();
+  return positive && step_.allFinite() && multiplier_step_.allFinite();
 }
 
 /// Moves `state` along step_; false where no fraction of it decreases the value.

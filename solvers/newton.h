@@ -40,7 +40,13 @@ class NewtonSystem {
   virtual bool factorize(double shift) = 0;
   /// H step + A^T multiplier_step = -gradient and A step = -violation, A being the linear equalities; the fixed
   /// variables get zero.
-  virtual void solve(const Vector& gradient, const Vector& violation, Vector& step, Vector& multiplier_step) = 0;
+  /// False where H turns out not to be positive definite.
+  virtual bool solve(const Vector& gradient, const Vector& violation, Vector& step, Vector& multiplier_step) = 0;
+  /// Forces, in the Euclidean norm, N, that iterations may leave of the next right-hand sides; direct methods leave
+  /// round-off.
+  virtual void allow(double /*force*/) {}
+  /// A new minimisation begins: nothing learned from earlier matrices counts.
+  virtual void start() {}
 
   /// Flops and nonzeros of the factor, and bytes of the kept structures; zero where unknown.
   struct Size {
@@ -48,8 +54,14 @@ class NewtonSystem {
     std::size_t bytes = 0;
   };
   virtual Size size() const { return {}; }
-  /// How many factorisations so far needed pivoting.
-  virtual Index pivoted() const { return 0; }
+  /// What has happened inside so far.
+  struct Effort {
+    Index pivoted = 0;       ///< factorisations that needed pivoting
+    Index iterations = 0;    ///< of conjugate gradients
+    Index refactorized = 0;  ///< factorisations of the whole matrix after iterations that took too long
+    double more_flops = 0;   ///< of factorisations, beyond size().factor_flops each
+  };
+  virtual Effort effort() const { return {}; }
 };
 
 /// Fixed variables substituted by the assembly itself, CHOLMOD in the order of its matrix; no equalities.
@@ -58,7 +70,7 @@ class SubstitutedSystem final : public NewtonSystem {
   /// The assembly has been put in the order that `cholesky` has analysed; both are borrowed.
   SubstitutedSystem(const Assembly& assembly, Cholesky& cholesky) : assembly_(assembly), cholesky_(cholesky) {}
   bool factorize(double shift) override { return cholesky_.factorize(assembly_.matrix(), shift); }
-  void solve(const Vector& gradient, const Vector& violation, Vector& step, Vector& multiplier_step) override;
+  bool solve(const Vector& gradient, const Vector& violation, Vector& step, Vector& multiplier_step) override;
   Size size() const override {
     return {cholesky_.factor_flops(), cholesky_.factor_nonzeros(), cholesky_.memory_bytes()};
   }
@@ -91,7 +103,7 @@ class Newton {
 
  private:
   void evaluate(NewtonState& state, Counts& counts, Timings& timings);
-  bool factorize_shifted(const std::function<bool(double)>& factorize);
+  bool shifted_step(const std::function<bool(double)>& solve);
   bool direction(const NewtonState& state, Counts& counts, Timings& timings);
   bool line_search(NewtonState& state, Counts& counts, Timings& timings);
 

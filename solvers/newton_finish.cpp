@@ -22,7 +22,7 @@ bool AugmentedLagrangian::Run::newton_step() {
   {
     const Stopwatch watch(result.timings.solve);
     ++result.counts.linear_solves;
-    work.system->solve(gradient, violation, step, equal_step);
+    if (!work.system->solve(gradient, violation, step, equal_step)) return false;
   }
   if (!step.allFinite() || !equal_step.allFinite()) return false;
   if (believable_fraction(result.x, step, options.newton.longest_step) < 1) return false;
@@ -88,7 +88,7 @@ bool AugmentedLagrangian::Run::newton_finish() {
     before = judged.over(options.tolerances);
     if (!factorize()) break;
     for (int round = 0; round < most_rounds; ++round) {
-      if (result.counts.linear_solves >= options.max_newton || budget.interrupted() || budget.out_of_time()) break;
+      if (linear_solves() >= options.max_newton || budget.interrupted() || budget.out_of_time()) break;
       const Point last = here();
       if (newton_step() && judged.over(options.tolerances) <= worth_another * last.judged.over(options.tolerances))
         continue;

@@ -1,5 +1,6 @@
 #include "solvers/null_space_system.h"
 
+#include "linalg/conjugate_gradients.h"
 #include "linalg/null_space.h"
 
 namespace taut {
@@ -74,7 +75,7 @@ bool NullSpaceSystem::factorize(double shift) {
   return cholesky_.info() == Eigen::Success;
 }
 
-void NullSpaceSystem::solve(const Vector& gradient, const Vector& violation, Vector& step, Vector& multiplier_step) {
+bool NullSpaceSystem::solve(const Vector& gradient, const Vector& violation, Vector& step, Vector& multiplier_step) {
   const auto hessian = assembly_.matrix().selfadjointView<Eigen::Lower>();
   step.setZero(gradient.size());
   Vector force = gradient;
@@ -87,33 +88,32 @@ void NullSpaceSystem::solve(const Vector& gradient, const Vector& violation, Vec
   for (const int variable : fixed_) step[variable] = 0;  // the basis has round-off there
   multiplier_step.resize(rows_.rows());
   if (rows_.rows() > 0) multiplier_step = -normal_.solve(rows_ * (force - hessian * along));
+  return true;
 }
 
-Vector NullSpaceSystem::reduced_solution(const Vector& force) const {
+Vector NullSpaceSystem::reduced_solution(const Vector& force) {
   if (conjugate_gradients_) return by_conjugate_gradients(force);
   return cholesky_.solve(force);
 }
 
 /// To 1e-4 of the right-hand side: Newton takes what is left in its next step, and steps cost less than half.
-Vector NullSpaceSystem::by_conjugate_gradients(const Vector& right_hand_side) const {
+Vector NullSpaceSystem::by_conjugate_gradients(const Vector& right_hand_side) {
   const auto hessian = assembly_.matrix().selfadjointView<Eigen::Lower>();
-  Vector w = Vector::Zero(right_hand_side.size()), residual = right_hand_side;
-  Vector preconditioned = preconditioner_.cwiseProduct(residual), direction = preconditioned;
-  double energy = residual.dot(preconditioned);
-  const double enough = 1e-8 * energy;
-  for (Index iteration = 0; iteration < 10 * w.size() && energy > enough; ++iteration) {
-    const Vector moved = basis_ * direction;
-    const Vector product = basis_.transpose() * Vector(hessian * moved) + shift_ * direction;
-    const double curvature = direction.dot(product);
-    if (!(curvature > 0)) return iteration == 0 ? direction : w;
-    const double length = energy / curvature;
-    w += length * direction;
-    residual -= length * product;
-    preconditioned = preconditioner_.cwiseProduct(residual);
-    const double next = residual.dot(preconditioned);
-    direction = preconditioned + (next / energy) * direction;
-    energy = next;
-  }
+  const auto apply = [&](const Vector& w, Vector& product) {
+    const Vector moved = basis_ * w;
+    product = basis_.transpose() * Vector(hessian * moved) + shift_ * w;
+  };
+  const auto precondition = [&](const Vector& residual, Vector& result) {
+    result = preconditioner_.cwiseProduct(residual);
+  };
+  const double enough = 1e-8 * right_hand_side.dot(preconditioner_.cwiseProduct(right_hand_side));
+  const auto done = [&](const Vector& residual) {
+    return residual.dot(preconditioner_.cwiseProduct(residual)) <= enough;
+  };
+  Vector w;
+  const CgEnd end = conjugate_gradients(right_hand_side, apply, precondition, done, 10 * right_hand_side.size(), w,
+                                        effort_.iterations);
+  if (end == CgEnd::negative_curvature && w.isZero(0)) precondition(right_hand_side, w);
   return w;
 }
 

@@ -23,12 +23,13 @@ class NullSpaceSystem final : public NewtonSystem {
   NullSpaceSystem(const Assembly& assembly, const EqualityRows& equalities, const Problem& problem,
                   bool conjugate_gradients = false);
   bool factorize(double shift) override;
-  void solve(const Vector& gradient, const Vector& violation, Vector& step, Vector& multiplier_step) override;
+  bool solve(const Vector& gradient, const Vector& violation, Vector& step, Vector& multiplier_step) override;
   Size size() const override;
+  Effort effort() const override { return effort_; }
 
  private:
-  Vector reduced_solution(const Vector& force) const;
-  Vector by_conjugate_gradients(const Vector& right_hand_side) const;
+  Vector reduced_solution(const Vector& force);
+  Vector by_conjugate_gradients(const Vector& right_hand_side);
 
   const Assembly& assembly_;
   std::vector<int> fixed_;
@@ -40,6 +41,7 @@ class NullSpaceSystem final : public NewtonSystem {
   bool conjugate_gradients_;
   Vector preconditioner_;  // of Z^T H Z
   bool analysed_ = false;
+  Effort effort_;
 };
 
 }  // namespace taut

@@ -87,8 +87,8 @@ void AugmentedLagrangian::Run::solve(const WarmStart& warm) {
   result.counts.screened = left_out;
   loop();
   const bool cut_off = result.status == Status::interrupted || result.status == Status::time_limit;
-  if (left_out > 0 && !cut_off && (result.status != Status::solved || left_out_violated())) {
-    // The point with its constraints back is what a solve without screening would start from.
+  if (!cut_off && left_out_violated()) {
+    before_again = result.counts;
     left_out = 0;
     result.multipliers.clear();
     result.penalties.clear();

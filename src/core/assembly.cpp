@@ -33,6 +33,9 @@ struct Term {
 
   const Stencils& stencils() const { return energies.front()->stencils(); }
   bool has_curvature() const { return energies.front()->has_curvature(); }
+  bool couples_weakly() const {
+    return std::all_of(energies.begin(), energies.end(), [](const Energy* energy) { return energy->couples_weakly(); });
+  }
   bool takes(const Energy& energy) const {
     return has_curvature() == energy.has_curvature() && stencils() == energy.stencils();
   }
@@ -88,7 +91,8 @@ struct Assembly::Data {
   SparseMatrix matrix;
 
   void choose_group_size();
-  void build_graph();
+  void find_free_groups();
+  GroupGraph build_graph(bool with_weak) const;
   void build_pattern();
   void build_slots();
   void share_out();
@@ -121,7 +125,7 @@ void Assembly::Data::choose_group_size() {
   }
 }
 
-void Assembly::Data::build_graph() {
+void Assembly::Data::find_free_groups() {
   const int groups = static_cast<int>(size) / group_size;
   compact.assign(groups, -1);
   for (int group = 0; group < groups; ++group) {
@@ -131,9 +135,12 @@ void Assembly::Data::build_graph() {
     compact[group] = static_cast<int>(free_groups.size());
     free_groups.push_back(group);
   }
+}
+
+GroupGraph Assembly::Data::build_graph(bool with_weak) const {
   std::vector<std::vector<int>> neighbours(free_groups.size());
   for (const Term& term : terms) {
-    if (!term.has_curvature()) continue;
+    if (!term.has_curvature() || (!with_weak && term.couples_weakly())) continue;
     const Stencils& stencils = term.stencils();
     for (Index element = 0; element < stencils.count(); ++element) {
       for (int a = 0; a < term.groups; ++a) {
@@ -144,13 +151,15 @@ void Assembly::Data::build_graph() {
       }
     }
   }
-  graph.starts.assign(1, 0);
+  GroupGraph built;
+  built.starts.assign(1, 0);
   for (auto& list : neighbours) {
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
-    graph.neighbours.insert(graph.neighbours.end(), list.begin(), list.end());
-    graph.starts.push_back(static_cast<int>(graph.neighbours.size()));
+    built.neighbours.insert(built.neighbours.end(), list.begin(), list.end());
+    built.starts.push_back(static_cast<int>(built.neighbours.size()));
   }
+  return built;
 }
 
 /// The pattern: in each column of position p, the whole diagonal block, then the blocks of all later neighbours.
@@ -289,7 +298,8 @@ Assembly::Assembly(Index size, const std::vector<const Energy*>& energies, const
   }
   data_->choose_group_size();
   for (Term& term : data_->terms) term.groups = term.stencils().width() / data_->group_size;
-  data_->build_graph();
+  data_->find_free_groups();
+  data_->graph = data_->build_graph(true);
   std::vector<int> natural(data_->free_groups.size());
   std::iota(natural.begin(), natural.end(), 0);
   set_order(natural);
@@ -300,6 +310,7 @@ Assembly::Assembly(Assembly&&) noexcept = default;
 Assembly& Assembly::operator=(Assembly&&) noexcept = default;
 
 const GroupGraph& Assembly::graph() const { return data_->graph; }
+GroupGraph Assembly::strong_graph() const { return data_->build_graph(false); }
 
 void Assembly::set_order(const std::vector<int>& order) {
   Data& d = *data_;

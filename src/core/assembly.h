@@ -34,6 +34,8 @@ class Assembly {
 
   /// Which free groups share an element of an energy with curvature.
   const GroupGraph& graph() const;
+  /// The same without elements on which all energies couple weakly.
+  GroupGraph strong_graph() const;
   /// Places node order[k] of graph() at position k, and computes pattern and slots anew. Until then the order is the
   /// natural one.
   void set_order(const std::vector<int>& order);

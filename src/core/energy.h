@@ -29,6 +29,10 @@ class Energy {
   /// False for terms that are linear in x: they are left out of the Hessian's pattern.
   virtual bool has_curvature() const { return true; }
 
+  /// True where what it couples beyond the other energies is usually weak beside them, as bending beside stretching and
+  /// inertia: a factorisation may leave it to an iteration.
+  virtual bool couples_weakly() const { return false; }
+
   /// The largest fraction of the step dx that keeps the element inside its domain (infinity where nothing guards it).
   virtual double largest_step(Index /*element*/, const double* /*x*/, const double* /*dx*/) const {
     return std::numeric_limits<double>::infinity();

@@ -40,6 +40,7 @@ Counts& Counts::operator+=(const Counts& other) {
   linear_solves += other.linear_solves;
   factorizations += other.factorizations;
   pivoted_factorizations += other.pivoted_factorizations;
+  inner_iterations += other.inner_iterations;
   screened += other.screened;
   screening_failures += other.screening_failures;
   symbolic_analyses += other.symbolic_analyses;

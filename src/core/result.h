@@ -30,10 +30,11 @@ struct Counts {
   long linear_solves = 0;           ///< Newton systems solved
   long factorizations = 0;          ///< numeric factorisations, failed ones included
   long pivoted_factorizations = 0;  ///< those of them that needed pivoting, and are slower for it
+  long inner_iterations = 0;        ///< of conjugate gradients on Newton systems
   long symbolic_analyses = 0;       ///< orderings and symbolic factorisations
   long matrix_allocations = 0;      ///< sparse matrices or slot tables allocated
   long function_evaluations = 0;    ///< values of the objective, with or without derivatives
-  long screened = 0;                ///< constraints left out of a solve, as no element could come near its boundary
+  long screened = 0;                ///< elements of constraints left out of a solve, too far from their boundary
   long screening_failures = 0;      ///< solves that began again with them, as one was violated
   double factor_flops = 0;          ///< floating-point operations of the factorisations; 0 where not known
   Counts& operator+=(const Counts& other);

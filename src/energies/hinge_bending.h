@@ -40,6 +40,7 @@ class HingeBending final : public Energy {
   const Stencils& stencils() const override { return stencils_; }
   double evaluate(Index element, const double* x, double* gradient, double* hessian,
                   Curvature curvature) const override;
+  bool couples_weakly() const override { return true; }
   const std::vector<Hinge>& hinges() const { return hinges_; }
 
  private:

@@ -23,6 +23,7 @@ class StiffnessDamping final : public Energy {
   const Stencils& stencils() const override { return energy_.stencils(); }
   double evaluate(Index element, const double* x, double* gradient, double* hessian,
                   Curvature curvature) const override;
+  bool couples_weakly() const override { return energy_.couples_weakly(); }
 
  private:
   std::string name_;

@@ -26,6 +26,9 @@ class Cholesky {
   bool factorize(const SparseMatrix& lower, double shift = 0.0);
   /// Solves with the last factor; `x` may be `b`.
   void solve(const Vector& b, Vector& x);
+  /// The same to about six digits, for preconditioners: with the factor in single precision, rounded at the first such
+  /// solve after a factorisation, which halves the memory that the solve has to read.
+  void solve_roughly(const Vector& b, Vector& x);
 
   double factor_nonzeros() const;
   double factor_flops() const;

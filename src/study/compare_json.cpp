@@ -36,6 +36,7 @@ Json counts_json(const Counts& counts) {
           {"linear_solves", counts.linear_solves},
           {"factorizations", counts.factorizations},
           {"pivoted_factorizations", counts.pivoted_factorizations},
+          {"inner_iterations", counts.inner_iterations},
           {"screened", counts.screened},
           {"screening_failures", counts.screening_failures},
           {"symbolic_analyses", counts.symbolic_analyses},

@@ -18,6 +18,7 @@ Json counts_json(const Counts& counts) {
           {"linear_solves", counts.linear_solves},
           {"factorizations", counts.factorizations},
           {"pivoted_factorizations", counts.pivoted_factorizations},
+          {"inner_iterations", counts.inner_iterations},
           {"screened", counts.screened},
           {"screening_failures", counts.screening_failures},
           {"function_evaluations", counts.function_evaluations},
@@ -197,6 +198,7 @@ StepRecord step_of(const Json& json) {
   record.counts.linear_solves = counts.at("linear_solves");
   record.counts.factorizations = counts.at("factorizations");
   record.counts.pivoted_factorizations = counts.value("pivoted_factorizations", 0L);
+  record.counts.inner_iterations = counts.value("inner_iterations", 0L);
   record.counts.screened = counts.value("screened", 0L);
   record.counts.screening_failures = counts.value("screening_failures", 0L);
   record.counts.function_evaluations = counts.at("function_evaluations");

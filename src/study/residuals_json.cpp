@@ -36,6 +36,7 @@ Counts read_counts(const Json& json) {
           json.at("linear_solves"),
           json.at("factorizations"),
           json.value("pivoted_factorizations", 0L),
+          json.value("inner_iterations", 0L),
           json.at("symbolic_analyses"),
           json.at("matrix_allocations"),
           json.at("function_evaluations"),

@@ -19,15 +19,16 @@ TEST(Status, RejectsOtherTexts) {
 }
 
 TEST(Counts, AddEntryByEntry) {
-  Counts counts{1, 2, 3, 4, 5, 6, 7};
-  counts += Counts{10, 20, 30, 40, 50, 60, 70};
+  Counts counts{1, 2, 3, 4, 5, 6, 7, 8};
+  counts += Counts{10, 20, 30, 40, 50, 60, 70, 80};
   EXPECT_EQ(counts.outer, 11);
   EXPECT_EQ(counts.linear_solves, 22);
   EXPECT_EQ(counts.factorizations, 33);
   EXPECT_EQ(counts.pivoted_factorizations, 44);
-  EXPECT_EQ(counts.symbolic_analyses, 55);
-  EXPECT_EQ(counts.matrix_allocations, 66);
-  EXPECT_EQ(counts.function_evaluations, 77);
+  EXPECT_EQ(counts.inner_iterations, 55);
+  EXPECT_EQ(counts.symbolic_analyses, 66);
+  EXPECT_EQ(counts.matrix_allocations, 77);
+  EXPECT_EQ(counts.function_evaluations, 88);
 }
 
 TEST(Timings, AddEntryByEntry) {

@@ -46,6 +46,20 @@ GroupGraph grid_graph(int n) {
   return graph;
 }
 
+TEST(Cholesky, SolvesRoughlyToSinglePrecisionWithTheLastFactor) {
+  for (int n : {1, 2, 7, 20}) {
+    Cholesky cholesky(grid_laplacian(n), 1);
+    const Vector b = RandomValues(1).vector(n * n);
+    for (const double extra : {0.0, 3.0}) {
+      const SparseMatrix matrix = grid_laplacian(n, extra);
+      ASSERT_TRUE(cholesky.factorize(matrix));
+      Vector x = b;
+      cholesky.solve_roughly(x, x);
+      EXPECT_LE((x - dense(matrix).llt().solve(b)).norm(), 1e-6 * x.norm()) << n << ", " << extra;
+    }
+  }
+}
+
 TEST(Cholesky, SolvesAsADenseFactorDoes) {
   for (int n : {1, 2, 7, 20}) {
     const SparseMatrix matrix = grid_laplacian(n);

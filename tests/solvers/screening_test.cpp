@@ -96,6 +96,26 @@ TEST(Screening, KeepsWhatIsNearerOrActiveAndEverythingWhereItIsOff) {
   EXPECT_EQ(pulled(0.5, 0.2, 0, 0).counts.screened, 0);
 }
 
+/// Whether there is anything that more iterations could reach is no matter of what was left out and is kept.
+TEST(Screening, IsNoReasonToBeginAgainWhereTheToleranceCannotBeReached) {
+  OwnedProblem owned;
+  owned.problem.initial_guess = Vector::Zero(1);
+  owned.problem.node_size = 1;
+  owned.add(std::make_shared<Pull>(0.3, 4));
+  owned.add(std::make_shared<Pull>(0.4, 4));
+  owned.add(std::make_shared<Wall>());
+  AugmentedLagrangianOptions options;
+  options.tolerances = {1e-300, 1e-300, 1e-300};
+  WarmStart warm;
+  warm.multipliers = {Vector::Zero(1)};
+  warm.changes = {0.2};
+  const Result result = AugmentedLagrangian(options).solve(owned.problem, warm, {});
+  EXPECT_NE(result.status, Status::solved);
+  EXPECT_EQ(result.counts.screened, 1);
+  EXPECT_EQ(result.counts.screening_failures, 0);
+  EXPECT_NEAR(result.x[0], 0.35, 1e-6);
+}
+
 /// x_k <= 1 for each variable.
 class Walls final : public Constraint {
  public:

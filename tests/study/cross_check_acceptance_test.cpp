@@ -58,7 +58,7 @@ std::vector<Case> cases() {
   } limits[] = {{"both_10", "0.9", "1.1", {}},
                 {"upper_10", "0", "1.1", {}},
                 {"upper_1", "0", "1.01", {}},
-                {"upper_0_1", "0", "1.001", {0, 4, 2}},
+                {"upper_0_1", "0", "1.001", {1, 4, 2}},
                 {"both_1", "0.99", "1.01", {}}};
   for (int grid = 0; grid < 3; ++grid) {
     const std::string cells = std::to_string(8 + 4 * grid);

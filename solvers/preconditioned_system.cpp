@@ -1,0 +1,139 @@
+#include "solvers/preconditioned_system.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "linalg/conjugate_gradients.h"
+
+namespace taut {
+namespace {
+
+/// About as dear as a factorisation of the whole matrix.
+constexpr Index most_iterations = 20;
+/// On finer meshes it takes more than those: bending grows beside inertia with the fourth power of the cells.
+constexpr Index most_unknowns = 100000;
+
+bool contains(const GroupGraph& graph, int group, int other) {
+  const auto begin = graph.neighbours.begin();
+  return std::binary_search(begin + graph.starts[group], begin + graph.starts[group + 1], other);
+}
+
+}  // namespace
+
+PreconditionedSystem::PreconditionedSystem(const Assembly& assembly, const std::vector<int>& order, Cholesky& cholesky,
+                                           int threads)
+    : assembly_(assembly), cholesky_(cholesky) {
+  const GroupGraph strong = assembly.strong_graph();
+  const SparseMatrix& matrix = assembly.matrix();
+  const int n = static_cast<int>(matrix.rows()), group_size = n / strong.count();
+  const std::vector<int> own_order = fill_reducing_order(strong);
+  std::vector<int> position(own_order.size());
+  for (std::size_t p = 0; p < own_order.size(); ++p) position[own_order[p]] = static_cast<int>(p);
+  for (int i = 0; i < n; ++i) place_.push_back(position[order[i / group_size]] * group_size + i % group_size);
+
+  // Entries of the lower triangle, where H has them and where B does.
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto in_b = [&](int row, int column) { return std::minmax(place_[row], place_[column]); };
+  for (int column = 0; column < n; ++column) {
+    for (SparseMatrix::InnerIterator entry(matrix, column); entry; ++entry) {
+      const int row = static_cast<int>(entry.row());
+      const int a = order[row / group_size], b = order[column / group_size];
+      slots_.push_back(row < column ? ignored : a == b || contains(strong, a, b) ? 0 : weak);
+      if (slots_.back() < 0) continue;
+      const auto [low, high] = in_b(row, column);
+      entries.emplace_back(high, low, 0.0);
+    }
+  }
+  preconditioner_.resize(n, n);
+  preconditioner_.setFromTriplets(entries.begin(), entries.end());
+  const int *starts = preconditioner_.outerIndexPtr(), *rows = preconditioner_.innerIndexPtr();
+  const auto slot = [&](int low, int high) {
+    return static_cast<int>(std::lower_bound(rows + starts[low], rows + starts[low + 1], high) - rows);
+  };
+  std::size_t k = 0;
+  for (int column = 0; column < n; ++column) {
+    for (SparseMatrix::InnerIterator entry(matrix, column); entry; ++entry, ++k) {
+      if (slots_[k] < 0) continue;
+      const auto [low, high] = in_b(static_cast<int>(entry.row()), column);
+      slots_[k] = slot(low, high);
+    }
+  }
+  for (const int place : place_) diagonal_.push_back(slot(place, place));
+  factor_ = std::make_unique<Cholesky>(preconditioner_, threads);
+}
+
+bool PreconditionedSystem::pays(const Assembly& assembly) {
+  return assembly.matrix().rows() <= most_unknowns &&
+         assembly.strong_graph().neighbours.size() < assembly.graph().neighbours.size();
+}
+
+bool PreconditionedSystem::factorize(double shift) {
+  const SparseMatrix& matrix = assembly_.matrix();
+  shift_ = shift;
+  direct_ = direct_only_;
+  if (direct_) return factorize_whole();
+  double* values = preconditioner_.valuePtr();
+  std::fill(values, values + preconditioner_.nonZeros(), 0.0);
+  const double* from = matrix.valuePtr();
+  const int *starts = matrix.outerIndexPtr(), *rows = matrix.innerIndexPtr();
+  for (int column = 0; column < matrix.cols(); ++column) {
+    for (int k = starts[column]; k < starts[column + 1]; ++k) {
+      const int slot = slots_[k];
+      if (slot >= 0) {
+        values[slot] += from[k];
+      } else if (slot == weak) {
+        values[diagonal_[rows[k]]] += std::abs(from[k]);
+        values[diagonal_[column]] += std::abs(from[k]);
+      }
+    }
+  }
+  return factor_->factorize(preconditioner_, shift);
+}
+
+bool PreconditionedSystem::solve(const Vector& gradient, const Vector& /*violation*/, Vector& step,
+                                 Vector& multiplier_step) {
+  multiplier_step.resize(0);
+  assembly_.to_ordered(gradient, right_hand_side_);
+  if (!direct_) {
+    const auto hessian = assembly_.matrix().selfadjointView<Eigen::Lower>();
+    const auto apply = [&](const Vector& v, Vector& product) {
+      product.noalias() = hessian * v;
+      product += shift_ * v;
+    };
+    const auto precondition = [&](const Vector& residual, Vector& result) {
+      placed_.resize(residual.size());
+      for (std::size_t i = 0; i < place_.size(); ++i) placed_[place_[i]] = residual[static_cast<Index>(i)];
+      factor_->solve_roughly(placed_, placed_);
+      result.resize(residual.size());
+      for (std::size_t i = 0; i < place_.size(); ++i) result[static_cast<Index>(i)] = placed_[place_[i]];
+    };
+    const auto done = [&](const Vector& residual) { return residual.norm() <= allowed_; };
+    const CgEnd end = conjugate_gradients(right_hand_side_, apply, precondition, done, most_iterations, solution_,
+                                          effort_.iterations);
+    if (end == CgEnd::negative_curvature) return false;
+    direct_ = direct_only_ = end == CgEnd::iteration_limit;
+    if (direct_) {
+      ++effort_.refactorized;
+      if (!factorize_whole()) return false;
+    }
+  }
+  if (direct_) cholesky_.solve(right_hand_side_, solution_);
+  assembly_.from_ordered(solution_, step);
+  step = -step;
+  return true;
+}
+
+bool PreconditionedSystem::factorize_whole() {
+  effort_.more_flops += cholesky_.factor_flops() - factor_->factor_flops();
+  return cholesky_.factorize(assembly_.matrix(), shift_);
+}
+
+NewtonSystem::Size PreconditionedSystem::size() const {
+  std::size_t bytes = factor_->memory_bytes() + cholesky_.memory_bytes();
+  bytes += static_cast<std::size_t>(preconditioner_.nonZeros()) * (sizeof(double) + sizeof(int));
+  bytes += (slots_.size() + diagonal_.size() + place_.size()) * sizeof(int);
+  return {factor_->factor_flops(), factor_->factor_nonzeros(), bytes};
+}
+
+}  // namespace taut
