@@ -103,7 +103,7 @@ class CentralPath {
     double fraction =
         std::min(believable_fraction(x, step_, options_.longest_step), 0.9 * assembly_.largest_step(x, step_));
     double best_fraction = fraction, best = std::numeric_limits<double>::infinity();
-    const bool unchecked = crawling_ >= 6;
+    const bool unchecked = crawling_ >= 6 && steps_ > options_.exact_after;
     bool accepted = false;
     for (int halving = 0; halving < options_.max_halvings && !accepted; ++halving) {
       if (halving > 0) fraction *= 0.5;
@@ -133,6 +133,8 @@ class CentralPath {
  private:
   /// False where the matrix is not positive definite.
   bool solve() {
+    const double unbalanced = std::max(gradient_.norm(), 0.1 * force_tolerance_);
+    system_.allow(curvature_ == Curvature::exact ? 0 : left_by_iterations * unbalanced);
     {
       const Stopwatch watch(timings_.factorization);
       ++counts_.factorizations;
@@ -140,7 +142,6 @@ class CentralPath {
     }
     const Stopwatch watch(timings_.solve);
     ++counts_.linear_solves;
-    system_.allow(left_by_iterations * std::max(gradient_.norm(), 0.1 * force_tolerance_));
     return system_.solve(right_hand_side_, violation_, step_, equal_step_);
   }
 
@@ -268,6 +269,7 @@ bool follow_central_path(Assembly& assembly, NewtonSystem& system, const Equalit
     path.advance(x, ask_below);
   }
   for (EliminatedSlack& slack : slacks) slack.set_linearisation(Linearisation::augmented_lagrangian);
+  system.allow(0);
   return accepted;
 }
 

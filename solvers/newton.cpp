@@ -10,8 +10,6 @@ namespace taut {
 
 namespace {
 const EqualityRows no_equalities;
-/// Of the forces. Newton takes what is left in its next step.
-constexpr double left_by_iterations = 1e-5;
 }  // namespace
 
 void NewtonOptions::validate() const {
@@ -97,7 +95,6 @@ bool Newton::direction(const NewtonState& state, Counts& counts, Timings& timing
     }
     const Stopwatch watch(timings.solve);
     ++counts.linear_solves;
-    system_.allow(left_by_iterations * state.gradient.norm());
     return system_.solve(state.gradient, state.violation, step_, multiplier_step_);
   };
   const auto assemble = [&](Curvature curvature) {

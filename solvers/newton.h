@@ -42,8 +42,8 @@ class NewtonSystem {
   /// variables get zero.
   /// False where H turns out not to be positive definite.
   virtual bool solve(const Vector& gradient, const Vector& violation, Vector& step, Vector& multiplier_step) = 0;
-  /// Forces, in the Euclidean norm, N, that iterations may leave of the next right-hand sides; direct methods leave
-  /// round-off.
+  /// Of the next matrices: forces, in the Euclidean norm, N, that iterations may leave of a right-hand side. With 0,
+  /// which is what holds at first, there are no iterations, and an indefinite matrix does not go unnoticed.
   virtual void allow(double /*force*/) {}
   /// A new minimisation begins: nothing learned from earlier matrices counts.
   virtual void start() {}

@@ -71,7 +71,7 @@ bool PreconditionedSystem::pays(const Assembly& assembly) {
 bool PreconditionedSystem::factorize(double shift) {
   const SparseMatrix& matrix = assembly_.matrix();
   shift_ = shift;
-  direct_ = direct_only_;
+  direct_ = direct_only_ || allowed_ == 0;
   if (direct_) return factorize_whole();
   double* values = preconditioner_.valuePtr();
   std::fill(values, values + preconditioner_.nonZeros(), 0.0);
@@ -111,8 +111,7 @@ bool PreconditionedSystem::solve(const Vector& gradient, const Vector& /*violati
     const auto done = [&](const Vector& residual) { return residual.norm() <= allowed_; };
     const CgEnd end = conjugate_gradients(right_hand_side_, apply, precondition, done, most_iterations, solution_,
                                           effort_.iterations);
-    if (end == CgEnd::negative_curvature) return false;
-    direct_ = direct_only_ = end == CgEnd::iteration_limit;
+    direct_ = direct_only_ = end != CgEnd::converged;
     if (direct_) {
       ++effort_.refactorized;
       if (!factorize_whole()) return false;

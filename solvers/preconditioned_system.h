@@ -12,11 +12,9 @@ namespace taut {
 /// of one without. So the matrix H is preconditioned by the Cholesky factor of
 ///   B = H - C + diag(sum_j |C_ij|),
 /// C being the weak couplings. B - H is diagonally dominant, hence H <= B: B is positive definite where H is, and no
-/// eigenvalue of B^-1 H is above 1. Where those below are not small either, a few iterations do.
-///
-/// An indefinite H is noticed by B's factorisation or by a direction of negative curvature, or not at all: what the
-/// iteration ends with is a descent direction then too [Steihaug 1983]. Where it takes too long (bending that is stiff
-/// beside the inertia) H itself is factorised, at once from then on until start().
+/// eigenvalue of B^-1 H is above 1. Where those below are not small either, a few iterations come down to what allow()
+/// has permitted. Where it takes too long (bending that is stiff beside the inertia) H itself is factorised, at once
+/// from then on until start(); so it is where nothing is permitted.
 class PreconditionedSystem final : public NewtonSystem {
  public:
   /// The assembly has been put in `order`, that of its graph which `cholesky` has analysed; both are borrowed.

@@ -13,7 +13,8 @@ struct Case {
   Overrides overrides;
   int steps;
   int two_minima = 0;  ///< steps in which the methods end in different minima, both confirmed by the judge
-  int lost = 0;  ///< steps in which Ipopt stops elsewhere, as its rows lose their multipliers; the judge rejects them
+  int lost = 0;  ///< at most so many steps in which Ipopt stops elsewhere, as its rows lose their multipliers; the
+                 ///< judge rejects them
 };
 
 class EveryStep : public testing::TestWithParam<Case> {};
@@ -54,12 +55,13 @@ std::vector<Case> cases() {
                         {"tight_limits", "tight_limits", {}, 100}};
   const struct {
     const char *name, *min, *max;
-    int lost[3];  // with 8, 12 and 16 cells, measured
-  } limits[] = {{"both_10", "0.9", "1.1", {}},
-                {"upper_10", "0", "1.1", {}},
-                {"upper_1", "0", "1.01", {}},
-                {"upper_0_1", "0", "1.001", {1, 4, 2}},
-                {"both_1", "0.99", "1.01", {}}};
+    int lost = 0;
+  } limits[] = {{"both_10", "0.9", "1.1"},
+                {"upper_10", "0", "1.1"},
+                {"upper_1", "0", "1.01"},
+                // 0 to 4, which depends on the last digits of the states: a tenth would be another matter.
+                {"upper_0_1", "0", "1.001", 10},
+                {"both_1", "0.99", "1.01"}};
   for (int grid = 0; grid < 3; ++grid) {
     const std::string cells = std::to_string(8 + 4 * grid);
     for (const auto& limit : limits) {
@@ -70,7 +72,7 @@ std::vector<Case> cases() {
                       {"constraints.limit.max", limit.max}},
                      100,
                      0,
-                     limit.lost[grid]});
+                     limit.lost});
     }
   }
   return all;
