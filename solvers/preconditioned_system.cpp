@@ -21,8 +21,7 @@ bool contains(const GroupGraph& graph, int group, int other) {
 
 }  // namespace
 
-PreconditionedSystem::PreconditionedSystem(const Assembly& assembly, const std::vector<int>& order, Cholesky& cholesky,
-                                           int threads)
+PreconditionedSystem::PreconditionedSystem(const Assembly& assembly, const std::vector<int>& order, Cholesky& cholesky)
     : assembly_(assembly), cholesky_(cholesky) {
   const GroupGraph strong = assembly.strong_graph();
   const SparseMatrix& matrix = assembly.matrix();
@@ -60,7 +59,7 @@ PreconditionedSystem::PreconditionedSystem(const Assembly& assembly, const std::
     }
   }
   for (const int place : place_) diagonal_.push_back(slot(place, place));
-  factor_ = std::make_unique<Cholesky>(preconditioner_, threads);
+  factor_ = std::make_unique<Cholesky>(preconditioner_, 1);  // its blocks are too small for more
 }
 
 bool PreconditionedSystem::pays(const Assembly& assembly) {

@@ -18,7 +18,7 @@ namespace taut {
 class PreconditionedSystem final : public NewtonSystem {
  public:
   /// The assembly has been put in `order`, that of its graph which `cholesky` has analysed; both are borrowed.
-  PreconditionedSystem(const Assembly& assembly, const std::vector<int>& order, Cholesky& cholesky, int threads);
+  PreconditionedSystem(const Assembly& assembly, const std::vector<int>& order, Cholesky& cholesky);
 
   /// True where there are weak couplings and the mesh is not too fine.
   static bool pays(const Assembly& assembly);

@@ -53,13 +53,13 @@ TEST(PreconditionedSystem, LeavesBendingsOwnCouplingsOutOfTheFactor) {
   CrumpledSheet sheet(1e-6);
   // 320 edges, of which the held corner has three; bending alone couples the vertices across them.
   EXPECT_EQ(sheet.assembly.strong_graph().neighbours.size(), 2u * (320 - 3));
-  const PreconditionedSystem system(sheet.assembly, sheet.order, *sheet.cholesky, 1);
+  const PreconditionedSystem system(sheet.assembly, sheet.order, *sheet.cholesky);
   EXPECT_LT(system.size().factor_flops, 0.5 * sheet.cholesky->factor_flops());
 }
 
 TEST(PreconditionedSystem, AFewIterationsGiveTheStepOfTheWholeMatrix) {
   CrumpledSheet sheet(1e-6);
-  PreconditionedSystem system(sheet.assembly, sheet.order, *sheet.cholesky, 1);
+  PreconditionedSystem system(sheet.assembly, sheet.order, *sheet.cholesky);
   for (const double shift : {0.0, 1e-3}) {
     sheet.assembly.hessian(sheet.x, Curvature::positive_semidefinite, &sheet.gradient);
     ASSERT_TRUE(sheet.cholesky->factorize(sheet.assembly.matrix(), shift));
@@ -80,7 +80,7 @@ TEST(PreconditionedSystem, AFewIterationsGiveTheStepOfTheWholeMatrix) {
 /// The whole matrix is factorised where the iteration would be long, at once from then on, until the next start.
 TEST(PreconditionedSystem, StiffBendingIsFactorised) {
   CrumpledSheet sheet(1.0);
-  PreconditionedSystem system(sheet.assembly, sheet.order, *sheet.cholesky, 1);
+  PreconditionedSystem system(sheet.assembly, sheet.order, *sheet.cholesky);
   sheet.assembly.hessian(sheet.x, Curvature::positive_semidefinite, &sheet.gradient);
   system.allow(1e-6 * sheet.gradient.norm());
   const Vector direct = sheet.direct_step();
@@ -101,7 +101,7 @@ TEST(PreconditionedSystem, StiffBendingIsFactorised) {
 /// A squeezed membrane, whose exact Hessian is indefinite.
 TEST(PreconditionedSystem, FactorisesTheWholeMatrixWhereNothingIsAllowed) {
   CrumpledSheet sheet(1e-6);
-  PreconditionedSystem system(sheet.assembly, sheet.order, *sheet.cholesky, 1);
+  PreconditionedSystem system(sheet.assembly, sheet.order, *sheet.cholesky);
   sheet.assembly.hessian(0.5 * sheet.x, Curvature::exact, &sheet.gradient);
   ASSERT_FALSE(sheet.cholesky->factorize(sheet.assembly.matrix()));
   EXPECT_FALSE(system.factorize(0));
