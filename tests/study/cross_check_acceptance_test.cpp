@@ -13,8 +13,7 @@ struct Case {
   Overrides overrides;
   int steps;
   int two_minima = 0;  ///< steps in which the methods end in different minima, both confirmed by the judge
-  int lost = 0;  ///< at most so many steps in which Ipopt stops elsewhere, as its rows lose their multipliers; the
-                 ///< judge rejects them
+  int lost = 0;  ///< at most so many steps in which Ipopt stops elsewhere (docs/guide/solvers.md), judged unsolved
 };
 
 class EveryStep : public testing::TestWithParam<Case> {};
