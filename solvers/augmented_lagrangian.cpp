@@ -63,7 +63,7 @@ AugmentedLagrangian::Workspace::Workspace(const Problem& problem, const Augmente
     assembly.set_order(order);
     cholesky = std::make_unique<Cholesky>(assembly.matrix(), options.threads);
     if (PreconditionedSystem::pays(assembly)) {
-      system = std::make_unique<PreconditionedSystem>(assembly, order, *cholesky);
+      system = std::make_unique<PreconditionedSystem>(assembly, order, *cholesky, options.threads);
     } else {
       system = std::make_unique<SubstitutedSystem>(assembly, *cholesky);
     }

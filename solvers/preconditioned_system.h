@@ -18,7 +18,7 @@ namespace taut {
 class PreconditionedSystem final : public NewtonSystem {
  public:
   /// The assembly has been put in `order`, that of its graph which `cholesky` has analysed; both are borrowed.
-  PreconditionedSystem(const Assembly& assembly, const std::vector<int>& order, Cholesky& cholesky);
+  PreconditionedSystem(const Assembly& assembly, const std::vector<int>& order, Cholesky& cholesky, int threads);
 
   /// True where there are weak couplings and the mesh is not too fine.
   static bool pays(const Assembly& assembly);
@@ -32,9 +32,11 @@ class PreconditionedSystem final : public NewtonSystem {
 
  private:
   bool factorize_whole();
+  void multiply(const Vector& v, Vector& product);
 
   const Assembly& assembly_;
   Cholesky& cholesky_;
+  int threads_, group_size_;
   bool direct_only_ = false, direct_ = false;  // `direct_`: the last factorisation was of H
   double shift_ = 0, allowed_ = 0;
   SparseMatrix preconditioner_;  // B, in its own order
@@ -43,6 +45,8 @@ class PreconditionedSystem final : public NewtonSystem {
   std::vector<int> diagonal_;         // per row of H: its diagonal entry in B
   std::vector<int> place_;            // per row of H: its row in B
   std::unique_ptr<Cholesky> factor_;  // of B
+  int middle_;                        // group of columns of H up to which one thread multiplies, and another from there
+  Vector other_half_;                 // of a product
   Vector right_hand_side_, solution_, placed_;
   Effort effort_;
 };

@@ -7,8 +7,11 @@
 
 #include <cstring>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <string>
+
+#include "linalg/single_precision_factor.h"
 
 extern "C" void openblas_set_num_threads(int);
 
@@ -145,10 +148,10 @@ struct Cholesky::Data {
   Common c;
   cholmod_factor* factor = nullptr;
   cholmod_dense *x = nullptr, *y = nullptr, *e = nullptr;
-  int threads = 1;
+  int threads = 1, solve_threads = 1;
   double flops = 0, nonzeros = 0;
-  bool rounded = false;  // `single` holds the last factor
-  Eigen::VectorXf single, solution, below;
+  std::optional<SinglePrecisionFactor> single;  // from the first rough solve on
+  bool rounded = false;                         // it holds the last factor
   ~Data() {
     cholmod_free_factor(&factor, &c.common);
     cholmod_free_dense(&x, &c.common);
@@ -157,10 +160,11 @@ struct Cholesky::Data {
   }
 };
 
-Cholesky::Cholesky(const SparseMatrix& lower, int threads) : data_(std::make_unique<Data>()) {
+Cholesky::Cholesky(const SparseMatrix& lower, int threads, int solve_threads) : data_(std::make_unique<Data>()) {
   quiet_openmp();
   if (lower.rows() == 0) return;  // everything is fixed; CHOLMOD takes no empty matrix
   data_->threads = lower.rows() >= blas_threads_from ? threads : 1;
+  data_->solve_threads = solve_threads;
   data_->c.common.method[0].ordering = CHOLMOD_NATURAL;
   data_->c.common.postorder = 0;
   cholmod_sparse sparse = view(lower);
@@ -209,48 +213,17 @@ void Cholesky::solve(const Vector& b, Vector& x) {
 
 void Cholesky::solve_roughly(const Vector& b, Vector& x) {
   Data& d = *data_;
-  const cholmod_factor* factor = d.factor;
-  if (b.size() == 0 || !factor->is_super) return solve(b, x);
-  if (!d.rounded) {
-    d.single = Eigen::Map<const Vector>(static_cast<const double*>(factor->x), static_cast<Index>(factor->xsize))
-                   .cast<float>();
-    d.rounded = true;
-  }
-  // Supernode s: columns first[s].., on the rows from rows + row_start[s], its own columns first.
-  const auto *first = static_cast<const int*>(factor->super), *row_start = static_cast<const int*>(factor->pi);
-  const auto *value_start = static_cast<const int*>(factor->px), *rows = static_cast<const int*>(factor->s);
-  const int supernodes = static_cast<int>(factor->nsuper);
-  d.solution = b.cast<float>();
-  d.below.resize(static_cast<Index>(factor->maxesize));
-  const auto block = [&](int s) {
-    return Eigen::Map<const Eigen::MatrixXf>(d.single.data() + value_start[s], row_start[s + 1] - row_start[s],
-                                             first[s + 1] - first[s]);
-  };
-  for (int s = 0; s < supernodes; ++s) {
-    const auto l = block(s);
-    const Index columns = l.cols(), others = l.rows() - columns;
-    auto own = d.solution.segment(first[s], columns);
-    l.topRows(columns).triangularView<Eigen::Lower>().solveInPlace(own);
-    d.below.head(others).noalias() = l.bottomRows(others) * own;
-    const int* row = rows + row_start[s] + columns;
-    for (Index i = 0; i < others; ++i) d.solution[row[i]] -= d.below[i];
-  }
-  for (int s = supernodes - 1; s >= 0; --s) {
-    const auto l = block(s);
-    const Index columns = l.cols(), others = l.rows() - columns;
-    const int* row = rows + row_start[s] + columns;
-    for (Index i = 0; i < others; ++i) d.below[i] = d.solution[row[i]];
-    auto own = d.solution.segment(first[s], columns);
-    own.noalias() -= l.bottomRows(others).transpose() * d.below.head(others);
-    l.topRows(columns).triangularView<Eigen::Lower>().transpose().solveInPlace(own);
-  }
-  x = d.solution.cast<double>();
+  if (b.size() == 0 || !d.factor->is_super) return solve(b, x);
+  if (!d.single) d.single.emplace(*d.factor, d.solve_threads);
+  if (!d.rounded) d.single->round();
+  d.rounded = true;
+  d.single->solve(b, x);
 }
 
 double Cholesky::factor_nonzeros() const { return data_->nonzeros; }
 double Cholesky::factor_flops() const { return data_->flops; }
 std::size_t Cholesky::memory_bytes() const {
-  return data_->c.common.memory_inuse + static_cast<std::size_t>(data_->single.size()) * sizeof(float);
+  return data_->c.common.memory_inuse + (data_->single ? data_->single->memory_bytes() : 0);
 }
 
 }  // namespace taut

@@ -16,8 +16,8 @@ std::vector<int> fill_reducing_order(const GroupGraph& graph);
 /// numeric factorisations into the same memory.
 class Cholesky {
  public:
-  /// Analyses the pattern. `threads` is the most that the factorisation may use.
-  Cholesky(const SparseMatrix& lower, int threads);
+  /// Analyses the pattern. `threads` is the most that the factorisation may use, `solve_threads` that rough solves do.
+  Cholesky(const SparseMatrix& lower, int threads, int solve_threads = 1);
   ~Cholesky();
   Cholesky(Cholesky&&) noexcept;
   Cholesky& operator=(Cholesky&&) noexcept;

@@ -46,6 +46,14 @@ GroupGraph grid_graph(int n) {
   return graph;
 }
 
+SparseMatrix permuted(const SparseMatrix& lower, const std::vector<int>& order) {
+  Eigen::PermutationMatrix<Eigen::Dynamic> place(lower.rows());
+  for (int k = 0; k < static_cast<int>(order.size()); ++k) place.indices()[order[static_cast<std::size_t>(k)]] = k;
+  SparseMatrix result(lower.rows(), lower.cols());
+  result.selfadjointView<Eigen::Lower>() = lower.selfadjointView<Eigen::Lower>().twistedBy(place);
+  return result;
+}
+
 TEST(Cholesky, SolvesRoughlyToSinglePrecisionWithTheLastFactor) {
   for (int n : {1, 2, 7, 20}) {
     Cholesky cholesky(grid_laplacian(n), 1);
@@ -56,6 +64,27 @@ TEST(Cholesky, SolvesRoughlyToSinglePrecisionWithTheLastFactor) {
       Vector x = b;
       cholesky.solve_roughly(x, x);
       EXPECT_LE((x - dense(matrix).llt().solve(b)).norm(), 1e-6 * x.norm()) << n << ", " << extra;
+    }
+  }
+}
+
+/// A nested-dissection order has subtrees to share out; the natural order of a grid is one chain.
+TEST(Cholesky, SolvesRoughlyToTheSameBitsWithTwoThreads) {
+  constexpr int n = 40;
+  for (const bool dissected : {true, false}) {
+    SparseMatrix matrix = grid_laplacian(n);
+    if (dissected) matrix = permuted(matrix, fill_reducing_order(grid_graph(n)));
+    const Vector b = RandomValues(1).vector(n * n);
+    Cholesky serial(matrix, 1, 1), parallel(matrix, 1, 2);
+    ASSERT_TRUE(serial.factorize(matrix));
+    ASSERT_TRUE(parallel.factorize(matrix));
+    Vector exact, one, two;
+    serial.solve(b, exact);
+    serial.solve_roughly(b, one);
+    EXPECT_LE((one - exact).norm(), 1e-6 * exact.norm());
+    for (const char* time : {"first", "second"}) {
+      parallel.solve_roughly(b, two);
+      EXPECT_EQ(one, two) << time;
     }
   }
 }
@@ -200,11 +229,7 @@ TEST(FillReducingOrder, OfNothingAndOfLoneNodes) {
 TEST(FillReducingOrder, FillsLessThanTheNaturalOrder) {
   const int n = 40;
   const std::vector<int> order = fill_reducing_order(grid_graph(n));
-  Eigen::PermutationMatrix<Eigen::Dynamic> place(n * n);
-  for (int k = 0; k < n * n; ++k) place.indices()[order[static_cast<std::size_t>(k)]] = k;
-  const SparseMatrix natural = grid_laplacian(n);
-  SparseMatrix ordered(n * n, n * n);
-  ordered.selfadjointView<Eigen::Lower>() = natural.selfadjointView<Eigen::Lower>().twistedBy(place);
+  const SparseMatrix natural = grid_laplacian(n), ordered = permuted(natural, order);
   EXPECT_LT(Cholesky(ordered, 1).factor_nonzeros(), 0.6 * Cholesky(natural, 1).factor_nonzeros());
 }
 

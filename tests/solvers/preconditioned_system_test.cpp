@@ -53,34 +53,36 @@ TEST(PreconditionedSystem, LeavesBendingsOwnCouplingsOutOfTheFactor) {
   CrumpledSheet sheet(1e-6);
   // 320 edges, of which the held corner has three; bending alone couples the vertices across them.
   EXPECT_EQ(sheet.assembly.strong_graph().neighbours.size(), 2u * (320 - 3));
-  const PreconditionedSystem system(sheet.assembly, sheet.order, *sheet.cholesky);
+  const PreconditionedSystem system(sheet.assembly, sheet.order, *sheet.cholesky, 1);
   EXPECT_LT(system.size().factor_flops, 0.5 * sheet.cholesky->factor_flops());
 }
 
 TEST(PreconditionedSystem, AFewIterationsGiveTheStepOfTheWholeMatrix) {
   CrumpledSheet sheet(1e-6);
-  PreconditionedSystem system(sheet.assembly, sheet.order, *sheet.cholesky);
-  for (const double shift : {0.0, 1e-3}) {
-    sheet.assembly.hessian(sheet.x, Curvature::positive_semidefinite, &sheet.gradient);
-    ASSERT_TRUE(sheet.cholesky->factorize(sheet.assembly.matrix(), shift));
-    Vector ordered, solution, direct;
-    sheet.assembly.to_ordered(sheet.gradient, ordered);
-    sheet.cholesky->solve(ordered, solution);
-    sheet.assembly.from_ordered(solution, direct);
-    system.allow(1e-6 * sheet.gradient.norm());
-    ASSERT_TRUE(system.factorize(shift));
-    ASSERT_TRUE(system.solve(sheet.gradient, {}, sheet.step, sheet.none));
-    EXPECT_LT(energy_norm(sheet, sheet.step + direct), 1e-4 * energy_norm(sheet, direct)) << shift;
+  for (const int threads : {1, 2}) {
+    PreconditionedSystem system(sheet.assembly, sheet.order, *sheet.cholesky, threads);
+    for (const double shift : {0.0, 1e-3}) {
+      sheet.assembly.hessian(sheet.x, Curvature::positive_semidefinite, &sheet.gradient);
+      ASSERT_TRUE(sheet.cholesky->factorize(sheet.assembly.matrix(), shift));
+      Vector ordered, solution, direct;
+      sheet.assembly.to_ordered(sheet.gradient, ordered);
+      sheet.cholesky->solve(ordered, solution);
+      sheet.assembly.from_ordered(solution, direct);
+      system.allow(1e-6 * sheet.gradient.norm());
+      ASSERT_TRUE(system.factorize(shift));
+      ASSERT_TRUE(system.solve(sheet.gradient, {}, sheet.step, sheet.none));
+      EXPECT_LT(energy_norm(sheet, sheet.step + direct), 1e-4 * energy_norm(sheet, direct)) << shift;
+    }
+    EXPECT_GT(system.effort().iterations, 2);
+    EXPECT_LT(system.effort().iterations, 20) << "two systems";
+    EXPECT_EQ(system.effort().refactorized, 0);
   }
-  EXPECT_GT(system.effort().iterations, 2);
-  EXPECT_LT(system.effort().iterations, 20) << "two systems";
-  EXPECT_EQ(system.effort().refactorized, 0);
 }
 
 /// The whole matrix is factorised where the iteration would be long, at once from then on, until the next start.
 TEST(PreconditionedSystem, StiffBendingIsFactorised) {
   CrumpledSheet sheet(1.0);
-  PreconditionedSystem system(sheet.assembly, sheet.order, *sheet.cholesky);
+  PreconditionedSystem system(sheet.assembly, sheet.order, *sheet.cholesky, 1);
   sheet.assembly.hessian(sheet.x, Curvature::positive_semidefinite, &sheet.gradient);
   system.allow(1e-6 * sheet.gradient.norm());
   const Vector direct = sheet.direct_step();
@@ -101,7 +103,7 @@ TEST(PreconditionedSystem, StiffBendingIsFactorised) {
 /// A squeezed membrane, whose exact Hessian is indefinite.
 TEST(PreconditionedSystem, FactorisesTheWholeMatrixWhereNothingIsAllowed) {
   CrumpledSheet sheet(1e-6);
-  PreconditionedSystem system(sheet.assembly, sheet.order, *sheet.cholesky);
+  PreconditionedSystem system(sheet.assembly, sheet.order, *sheet.cholesky, 1);
   sheet.assembly.hessian(0.5 * sheet.x, Curvature::exact, &sheet.gradient);
   ASSERT_FALSE(sheet.cholesky->factorize(sheet.assembly.matrix()));
   EXPECT_FALSE(system.factorize(0));

@@ -1,0 +1,171 @@
+#include "linalg/single_precision_factor.h"
+
+#include <cholmod.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/parallel.h"
+
+namespace taut {
+namespace {
+
+/// Whatever the number of threads, for the same bits. More would put more columns above all subtrees.
+constexpr std::size_t most_shares = 2;
+
+}  // namespace
+
+SinglePrecisionFactor::SinglePrecisionFactor(const cholmod_factor_struct& factor, int threads)
+    : factor_(factor), threads_(threads), supernodes_(static_cast<int>(factor.nsuper)) {
+  share_out();
+  for (Share& share : shares_) {
+    share.below.resize(static_cast<Index>(factor.maxesize));
+    if (shares_.size() > 1) share.above.setZero(static_cast<Index>(factor.n));
+  }
+}
+
+void SinglePrecisionFactor::round() {
+  values_ =
+      Eigen::Map<const Vector>(static_cast<const double*>(factor_.x), static_cast<Index>(factor_.xsize)).cast<float>();
+}
+
+const int* SinglePrecisionFactor::first_column() const { return static_cast<const int*>(factor_.super); }
+const int* SinglePrecisionFactor::row_start() const { return static_cast<const int*>(factor_.pi); }
+
+const int* SinglePrecisionFactor::rows_below(int supernode) const {
+  const int columns = first_column()[supernode + 1] - first_column()[supernode];
+  return static_cast<const int*>(factor_.s) + row_start()[supernode] + columns;
+}
+
+Eigen::Map<const Eigen::MatrixXf> SinglePrecisionFactor::block(int supernode) const {
+  return {values_.data() + static_cast<const int*>(factor_.px)[supernode],
+          row_start()[supernode + 1] - row_start()[supernode],
+          first_column()[supernode + 1] - first_column()[supernode]};
+}
+
+/// Of every supernode the first of its subtree, which in postorder reaches from there to itself; empty where the
+/// columns are not in postorder.
+std::vector<int> SinglePrecisionFactor::first_descendants() const {
+  std::vector<int> first(supernodes_), count(supernodes_, 1);
+  std::iota(first.begin(), first.end(), 0);
+  for (int s = 0; s < supernodes_; ++s) {
+    if (first[s] != s - count[s] + 1) return {};
+    if (rows_below(s) == static_cast<const int*>(factor_.s) + row_start()[s + 1]) continue;  // a root
+    const int* columns = first_column();
+    const auto parent = std::upper_bound(columns, columns + supernodes_, *rows_below(s)) - columns - 1;
+    first[parent] = std::min(first[parent], first[s]);
+    count[parent] += count[s];
+  }
+  return first;
+}
+
+/// Takes the heaviest subtree apart, again and again, and keeps the division of which the columns above all subtrees
+/// and the heaviest share together have the least work.
+void SinglePrecisionFactor::share_out() {
+  shares_.resize(1);
+  top_.resize(supernodes_);
+  std::iota(top_.begin(), top_.end(), 0);
+  const std::vector<int> first = first_descendants();
+  if (first.empty()) return;
+
+  std::vector<double> entries(supernodes_ + 1, 0.0);  // of all supernodes before
+  for (int s = 0; s < supernodes_; ++s) {
+    const double rows = row_start()[s + 1] - row_start()[s], columns = first_column()[s + 1] - first_column()[s];
+    entries[s + 1] = entries[s] + rows * columns;
+  }
+  const auto subtree = [&](int root) {
+    return Subtree{first[root], root + 1, entries[root + 1] - entries[first[root]]};
+  };
+  const auto heavier = [](const Subtree& a, const Subtree& b) { return a.work > b.work; };
+
+  std::vector<Subtree> parts;
+  std::vector<int> top;
+  const auto take_apart = [&](int begin, int end) {  // into the subtrees of which begin ... end - 1 consists
+    for (int root = end - 1; root >= begin; root = first[root] - 1) parts.push_back(subtree(root));
+  };
+  take_apart(0, supernodes_);
+  double top_work = 0, best = entries.back();
+  while (!parts.empty() && parts.size() <= 8 * most_shares) {
+    std::sort(parts.begin(), parts.end(), heavier);
+    std::vector<Share> shares(most_shares);
+    const auto lighter = [](const Share& a, const Share& b) { return a.work < b.work; };
+    for (const Subtree& part : parts) {
+      Share& least = *std::min_element(shares.begin(), shares.end(), lighter);
+      least.subtrees.push_back(part);
+      least.work += part.work;
+    }
+    const double work = top_work + std::max_element(shares.begin(), shares.end(), lighter)->work;
+    if (work < best) {
+      best = work;
+      shares_ = std::move(shares);
+      top_ = top;
+    }
+    const Subtree heaviest = parts.front();
+    parts.erase(parts.begin());
+    top.push_back(heaviest.end - 1);
+    top_work += entries[heaviest.end] - entries[heaviest.end - 1];
+    take_apart(heaviest.begin, heaviest.end - 1);
+  }
+  std::sort(top_.begin(), top_.end());
+}
+
+/// Solves L y = b in place on some supernodes. What they take from columns at or after `end_column` is kept.
+void SinglePrecisionFactor::forward(int begin, int end, int end_column, Share& share) {
+  for (int s = begin; s < end; ++s) {
+    const auto l = block(s);
+    const Index columns = l.cols(), others = l.rows() - columns;
+    auto own = solution_.segment(first_column()[s], columns);
+    l.topRows(columns).triangularView<Eigen::Lower>().solveInPlace(own);
+    share.below.head(others).noalias() = l.bottomRows(others) * own;
+    const int* row = rows_below(s);
+    Index i = 0;
+    for (; i < others && row[i] < end_column; ++i) solution_[row[i]] -= share.below[i];
+    for (; i < others; ++i) share.above[row[i]] += share.below[i];
+  }
+}
+
+/// Solves L^T x = y in place on some supernodes, whose rows below are known.
+void SinglePrecisionFactor::backward(int begin, int end, Share& share) {
+  for (int s = end - 1; s >= begin; --s) {
+    const auto l = block(s);
+    const Index columns = l.cols(), others = l.rows() - columns;
+    const int* row = rows_below(s);
+    for (Index i = 0; i < others; ++i) share.below[i] = solution_[row[i]];
+    auto own = solution_.segment(first_column()[s], columns);
+    own.noalias() -= l.bottomRows(others).transpose() * share.below.head(others);
+    l.topRows(columns).triangularView<Eigen::Lower>().transpose().solveInPlace(own);
+  }
+}
+
+template <class Work>
+void SinglePrecisionFactor::for_shares(const Work& work) {
+  const int shares = static_cast<int>(shares_.size());
+  const auto visit = [&](int k) {
+    Share& share = shares_[static_cast<std::size_t>(k)];
+    for (const Subtree& tree : share.subtrees) work(tree, share);
+  };
+  if (threads_ > 1) return parallel_for(shares, visit);
+  for (int k = 0; k < shares; ++k) visit(k);
+}
+
+void SinglePrecisionFactor::solve(const Vector& b, Vector& x) {
+  solution_ = b.cast<float>();
+  const int columns = static_cast<int>(factor_.n);
+  for_shares(
+      [&](const Subtree& tree, Share& share) { forward(tree.begin, tree.end, first_column()[tree.end], share); });
+  if (shares_.size() > 1) {
+    for (const int s : top_) {
+      const Index first = first_column()[s], size = first_column()[s + 1] - first;
+      for (Share& share : shares_) {
+        solution_.segment(first, size) -= share.above.segment(first, size);
+        share.above.segment(first, size).setZero();
+      }
+    }
+  }
+  for (const int s : top_) forward(s, s + 1, columns, shares_.front());
+  for (auto s = top_.rbegin(); s != top_.rend(); ++s) backward(*s, *s + 1, shares_.front());
+  for_shares([&](const Subtree& tree, Share& share) { backward(tree.begin, tree.end, share); });
+  x = solution_.cast<double>();
+}
+
+}  // namespace taut
