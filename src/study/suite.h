@@ -23,7 +23,8 @@ struct SuiteRun {
   std::string message;                  ///< why it is not finished or not solved
   Status status = Status::stalled;      ///< by the judge
   bool false_success = false;           ///< ModelSolution::false_success
-  double objective = 0;
+  bool maximise = false;
+  double objective = 0;     ///< as the model has it
   double violation = 0;     ///< largest of any row or bound as written
   double stationarity = 0;  ///< relative, as judged
   double seconds = 0;       ///< of the solver, median over the repeats
@@ -72,9 +73,12 @@ Suite run_suite(const SuiteOptions& options);
 /// `max_seconds` 0: no limit. Throws InputError.
 void try_model(const std::string& file, const Overrides& overrides, int repeat, double max_seconds);
 
-/// |f - best known| <= 1e-5 max(1, |best known|) and no violation above 1e-6, whatever the status; where no value is
-/// known, solved.
+/// |f - best known| <= 1e-5 max(1, |best known|) and no violation above 1e-6, whatever the status, or better than the
+/// best known value; where no value is known, solved.
 bool is_correct(const SuiteModel& model, const SuiteRun& run);
+/// By more than 1e-5 max(1, |best known|), at a point that violates nothing at all: without a constraint qualification
+/// a violation of 1e-12 can buy that much (hs013).
+bool is_better_than_known(const SuiteModel& model, const SuiteRun& run);
 
 struct SuiteScore {
   int false_successes = 0, correct = 0, solved = 0;  ///< models

@@ -16,6 +16,7 @@ Json run_json(const SuiteRun& run) {
           {"status", to_string(run.status)},
           {"message", run.message},
           {"false_success", run.false_success},
+          {"maximise", run.maximise},
           {"objective", run.objective},
           {"violation", run.violation},
           {"stationarity", run.stationarity},
@@ -46,6 +47,7 @@ SuiteRun parse_suite_run(std::string_view line) try {
   run.message = json.at("message");
   run.status = status_from_string(json.at("status").get<std::string>());
   run.false_success = json.at("false_success");
+  run.maximise = json.at("maximise");
   run.objective = number(json.at("objective"));
   run.violation = number(json.at("violation"));
   run.stationarity = number(json.at("stationarity"));

@@ -25,6 +25,7 @@ void try_model(const std::string& file, const Overrides& overrides, int repeat, 
     run.status = summary.status;
     run.message = summary.message;
     run.false_success = solution.false_success;
+    run.maximise = model.maximise();
     run.objective = summary.objective;
     run.violation = summary.feasibility.unscaled;
     run.stationarity = summary.stationarity.scaled;

@@ -23,6 +23,13 @@ TEST(Suite, CorrectIsTheBestKnownValueAtAFeasiblePoint) {
   const SuiteModel known{"known", "", 100.0}, unknown{"unknown", "", {}};
   EXPECT_TRUE(is_correct(known, run(Status::solved, 100.0009, 0, 1)));
   EXPECT_FALSE(is_correct(known, run(Status::solved, 100.0011, 0, 1)));
+  EXPECT_TRUE(is_correct(known, run(Status::solved, 98, 0, 1))) << "better than what was known";
+  EXPECT_FALSE(is_correct(known, run(Status::solved, 98, 1e-12, 1))) << "which a violation may have bought";
+  SuiteRun largest = run(Status::solved, 98, 0, 1);
+  largest.maximise = true;
+  EXPECT_FALSE(is_correct(known, largest));
+  largest.objective = 102;
+  EXPECT_TRUE(is_correct(known, largest));
   EXPECT_FALSE(is_correct(known, run(Status::solved, 100, 2e-6, 1)));
   EXPECT_FALSE(is_correct(known, run(Status::solved, std::nan(""), 0, 1)));
   EXPECT_TRUE(is_correct(known, run(Status::stalled, 100, 0, 1))) << "the answer counts, not the word for it";
