@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <ostream>
 
 #include "tests/study/cross_check.h"
 
@@ -14,6 +15,8 @@ struct Case {
   int steps;
   int two_minima = 0;  ///< steps in which the methods end in different minima, both confirmed by the judge
 };
+
+void PrintTo(const Case& one, std::ostream* out) { *out << one.name; }
 
 class EveryStep : public testing::TestWithParam<Case> {};
 
