@@ -8,7 +8,7 @@ namespace taut {
 
 struct IpoptOptions {
   Tolerances tolerances;
-  int max_iterations = 500;  ///< of the interior-point method, those of its restoration phase included
+  int max_iterations = 500;  ///< of one of the two attempts, those of its restoration phase included
   /// Starts at the multipliers of the step before where there are any, with a small barrier. Measured: fewer iterations
   /// where few constraints change from step to step, many more where many do.
   bool warm_start = false;
@@ -20,6 +20,9 @@ struct IpoptOptions {
 /// the problem (nonlinear_program.h) with exact gradient, Jacobian and Hessian. The objective is divided by the start's
 /// largest nodal force. Ipopt is asked for more than the tolerances, because its own errors are scaled differently;
 /// what it says of itself decides nothing: `solved` is said by residuals().
+///
+/// What it leaves unsolved (stalled, iteration_limit) is tried again from the same start with another guard of the
+/// barrier; the better of the two ends is returned.
 ///
 /// Its multipliers are positive everywhere, those of inactive rows tiny. They are returned as they are, or projected
 /// to the normal cones, whichever the residuals like better.

@@ -150,10 +150,8 @@ std::string suite_markdown(const Suite& suite) {
          fmt::format(
              "\n*false*: the solver, or the library behind it, says solved, the residuals do not. *correct*: within "
              "1e-5 of the best value known, violation at most 1e-6, or better than it and violation 0. *median s*: in "
-             "the solver, of {} "
-             "repeat{}. "
-             "*mean s*: shifted geometric mean (shift {} s), what is not correct counts {} s.\n\nTaut {}, {} ({} "
-             "cores), {}.\n",
+             "the solver, of {} repeat{}. *mean s*: shifted geometric mean (shift {} s), what is not correct counts {} "
+             "s.\n\nTaut {}, {} ({} cores), {}.\n",
              suite.repeat, suite.repeat == 1 ? "" : "s", suite_mean_shift, suite.time_limit, suite.version,
              suite.machine.cpu, suite.machine.cores, suite.machine.os);
 }

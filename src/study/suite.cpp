@@ -124,7 +124,7 @@ bool is_correct(const SuiteModel& model, const SuiteRun& run) {
 bool is_better_than_known(const SuiteModel& model, const SuiteRun& run) {
   if (!model.reference || run.outcome != "finished" || run.violation != 0) return false;
   const double known = *model.reference, gain = run.maximise ? run.objective - known : known - run.objective;
-  return gain > 1e-5 * std::max(1.0, std::abs(known));
+  return std::isfinite(gain) && gain > 1e-5 * std::max(1.0, std::abs(known));
 }
 
 SuiteScore score_of(const Suite& suite, const SuiteEntry& entry) {

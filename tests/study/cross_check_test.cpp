@@ -20,7 +20,8 @@ TEST(CrossCheck, ThreeMethodsAgreeOnAFallingCloth) {
   }
 }
 
-/// Ipopt's default guard of its barrier loses steps 7 and 8, with residuals of .2 and .009 (docs/guide/solvers.md).
+/// With its default guard of the barrier alone Ipopt loses steps 7 and 8, with residuals of .2 and .009
+/// (docs/guide/solvers.md).
 TEST(CrossCheck, ThreeMethodsAgreeOnNearlyInextensibleCloth) {
   const CrossCheck check(
       "hanging_cloth",

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "study/suite_json.h"
 
@@ -25,6 +26,7 @@ TEST(Suite, CorrectIsTheBestKnownValueAtAFeasiblePoint) {
   EXPECT_FALSE(is_correct(known, run(Status::solved, 100.0011, 0, 1)));
   EXPECT_TRUE(is_correct(known, run(Status::solved, 98, 0, 1))) << "better than what was known";
   EXPECT_FALSE(is_correct(known, run(Status::solved, 98, 1e-12, 1))) << "which a violation may have bought";
+  EXPECT_FALSE(is_correct(known, run(Status::unbounded, -std::numeric_limits<double>::infinity(), 0, 1)));
   SuiteRun largest = run(Status::solved, 98, 0, 1);
   largest.maximise = true;
   EXPECT_FALSE(is_correct(known, largest));
