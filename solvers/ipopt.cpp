@@ -299,6 +299,7 @@ std::pair<Status, const char*> unsolved(ApplicationReturnStatus ending) {
   }
 }
 
+/// Status and message of an attempt: the residuals come first, then what stopped it.
 std::pair<Status, const char*> verdict(const Residuals& judged, const Tolerances& tolerances,
                                        ApplicationReturnStatus ending, bool out_of_budget, const Budget& budget) {
   if (judged.within(tolerances)) return {Status::solved, "residuals within tolerance"};
