@@ -1,6 +1,7 @@
 #include "constraints/convex_sets.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -22,25 +23,29 @@ void check_bounds(const char* owner, double lower, double upper) {
 /// The smoothed projection of a number onto [lower, upper]: how far z moves down, the slope of the projection, and the
 /// derivative of the correction in epsilon.
 constexpr double smallest_slope = 1e-8;
+template <class Real>
 struct Smoothed {
-  double correction = 0, slope = 1, rate = 0;
+  Real correction = 0, slope = 1, rate = 0;
 };
 
-Smoothed smoothed(double z, double lower, double upper, double epsilon) {
-  Smoothed out;
+template <class Real>
+Smoothed<Real> smoothed(Real z, double lower, double upper, double epsilon) {
+  Smoothed<Real> out;
   // One bound: correction (y + r)/2 and slope (1 - y/r)/2, r = sqrt(y^2 + 4 epsilon). With `small` the smaller root
   // (r - |y|)/2 both are without cancellation.
-  const auto add = [&](double y, double sign) {
-    const double r = std::sqrt(y * y + 4 * epsilon), inverse = 1 / r, small = 2 * epsilon / (r + std::abs(y));
+  const auto add = [&](Real y, double sign) {
+    const Real r = square_root(y * y + 4 * epsilon), inverse = 1.0 / r, small = 2 * epsilon / (r + absolute(y));
+    const Real part = small * inverse;
+    const auto beyond = y >= Real(0.0);
     out.rate += sign * inverse;
-    out.correction += sign * (y >= 0 ? y + small : small);
+    out.correction += sign * select(beyond, y + small, small);
     // Between two bounds the slopes' deficits add up; the larger deficit is kept as a slope so that nothing cancels.
-    const double slope = y >= 0 ? small * inverse : 1 - small * inverse, deficit = y >= 0 ? 1 - slope : small * inverse;
-    out.slope = slope < out.slope ? slope - (1 - out.slope) : out.slope - deficit;
+    const Real slope = select(beyond, part, 1.0 - part), deficit = select(beyond, 1.0 - part, part);
+    out.slope = select(slope < out.slope, slope - (1.0 - out.slope), out.slope - deficit);
   };
   if (std::isfinite(upper)) add(z - upper, 1.0);
   if (std::isfinite(lower)) add(lower - z, -1.0);
-  out.slope = std::max(out.slope, smallest_slope);
+  out.slope = larger(out.slope, Real(smallest_slope));
   return out;
 }
 
@@ -68,7 +73,7 @@ void Box::project_smoothed(Index /*element*/, const double* z, double epsilon, d
                            double* rate) const {
   std::fill_n(inverse, dimension_ * dimension_, 0.0);
   for (int i = 0; i < dimension_; ++i) {
-    const Smoothed s = smoothed(z[i], lower_, upper_, epsilon);
+    const Smoothed<double> s = smoothed(z[i], lower_, upper_, epsilon);
     nearest[i] = z[i] - s.correction;
     inverse[i * dimension_ + i] = 1 / s.slope;
     rate[i] = -s.rate;
@@ -127,23 +132,41 @@ bool SpectralBox::contains_ball(Index /*element*/, const double* z, double radiu
   return pair.values[1] - radius >= lower_ && pair.values[0] + radius <= upper_;
 }
 
+/// With the projectors e1 e1^T, e2 e2^T onto the eigenvectors and their mixed product e12 in the coordinates of z.
+template <class Real>
+void SpectralBox::project_smoothed(const Real* z, double epsilon, Real* nearest, Real* inverse, Real* rate) const {
+  constexpr double root2 = std::numbers::sqrt2, half_root2 = 0.5 * root2;
+  const Spectrum2<Real> spectrum({z[0], half_root2 * z[1], z[2]});
+  const Real y1 = spectrum.high(), y2 = spectrum.low(), gap = 2.0 * spectrum.radius;
+  const Smoothed<Real> s1 = smoothed(y1, lower_, upper_, epsilon), s2 = smoothed(y2, lower_, upper_, epsilon);
+  const Real least = smaller(s1.slope, s2.slope);
+  const Real divided = smaller(larger(1.0 - (s1.correction - s2.correction) / gap, least), Real(1.0));
+  const Real omega = select(gap > 1e-7 * (absolute(y1) + absolute(y2)), divided, 0.5 * (s1.slope + s2.slope));
+  const Symmetric2<Real> down = spectrum.with_values(s1.correction, s2.correction);
+  const Symmetric2<Real> rates = spectrum.with_values(s1.rate, s2.rate);
+  nearest[0] = z[0] - down.a;
+  nearest[1] = z[1] - root2 * down.b;
+  nearest[2] = z[2] - down.c;
+  rate[0] = -rates.a;
+  rate[1] = -root2 * rates.b;
+  rate[2] = -rates.c;
+  const Real c = spectrum.cosine, mixed = half_root2 * spectrum.sine, plus = 0.5 + 0.5 * c, minus = 0.5 - 0.5 * c;
+  const std::array<Real, 3> e1{plus, mixed, minus}, e2{minus, -mixed, plus}, e12{-mixed, c, mixed};
+  const Real inverse1 = 1.0 / s1.slope, inverse2 = 1.0 / s2.slope, inverse12 = 1.0 / omega;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j)
+      inverse[3 * j + i] = inverse1 * e1[i] * e1[j] + inverse2 * e2[i] * e2[j] + inverse12 * e12[i] * e12[j];
+  }
+}
+
 void SpectralBox::project_smoothed(Index /*element*/, const double* z, double epsilon, double* nearest, double* inverse,
                                    double* rate) const {
-  constexpr double root2 = std::numbers::sqrt2;
-  const Eigen2 pair = eigen2(z[0], z[1] / root2, z[2]);
-  const double y1 = pair.values[0], y2 = pair.values[1], gap = y1 - y2;
-  const Smoothed s1 = smoothed(y1, lower_, upper_, epsilon), s2 = smoothed(y2, lower_, upper_, epsilon);
-  const double c = pair.vectors(0, 0), s = pair.vectors(1, 0);
-  const Vector3 e1(c * c, root2 * c * s, s * s), e2(s * s, -root2 * c * s, c * c),
-      e12(-root2 * c * s, c * c - s * s, root2 * c * s);
-  double omega = 0.5 * (s1.slope + s2.slope);
-  if (gap > 1e-7 * (std::abs(y1) + std::abs(y2))) {
-    omega = std::clamp(1 - (s1.correction - s2.correction) / gap, std::min(s1.slope, s2.slope), 1.0);
-  }
-  Eigen::Map<Vector3>{nearest} = Eigen::Map<const Vector3>(z) - s1.correction * e1 - s2.correction * e2;
-  Eigen::Map<Vector3>{rate} = -s1.rate * e1 - s2.rate * e2;
-  const Vector3 f1 = e1 / s1.slope, f2 = e2 / s2.slope, f12 = e12 / omega;
-  Eigen::Map<Matrix3>{inverse} = f1 * e1.transpose() + f2 * e2.transpose() + f12 * e12.transpose();
+  project_smoothed<double>(z, epsilon, nearest, inverse, rate);
+}
+
+void SpectralBox::project_smoothed_four(Index /*quad*/, const Pack* z, double epsilon, Pack* nearest, Pack* inverse,
+                                        Pack* rate) const {
+  project_smoothed<Pack>(z, epsilon, nearest, inverse, rate);
 }
 
 int SpectralBox::smooth_rows() const {

@@ -35,6 +35,8 @@ class SpectralBox final : public ConvexSet {
   bool contains_ball(Index element, const double* z, double radius) const override;
   void project_smoothed(Index element, const double* z, double epsilon, double* nearest, double* inverse,
                         double* rate) const override;
+  void project_smoothed_four(Index quad, const Pack* z, double epsilon, Pack* nearest, Pack* inverse,
+                             Pack* rate) const override;
   /// Each finite limit gives tr A >= 0 and det A >= 0, with A = (upper I - z)/s or (z - lower I)/s and s the larger of
   /// the finite |limits|: rows of order one. Equal limits give the three equations z = lower I instead. Where both
   /// eigenvalues are at the same limit, the gradient of det A vanishes and no constraint qualification holds: only
@@ -45,6 +47,9 @@ class SpectralBox final : public ConvexSet {
   void smooth_hessian(Index element, const double* z, const double* weights, double* hessian) const override;
 
  private:
+  template <class Real>
+  void project_smoothed(const Real* z, double epsilon, Real* nearest, Real* inverse, Real* rate) const;
+
   double lower_, upper_;
   double smooth_scale_;  ///< s of the smooth rows
 };

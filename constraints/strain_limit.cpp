@@ -10,8 +10,6 @@
 namespace taut {
 namespace {
 
-using Matrix9 = Eigen::Matrix<double, 9, 9>;
-
 Stencils triangle_stencils(const std::vector<RestTriangle>& triangles) {
   Stencils stencils(9);
   for (const RestTriangle& triangle : triangles) stencils.add_vertices(triangle.vertices);
@@ -48,41 +46,67 @@ std::string StrainLimitTriangles::element_name(Index element) const {
 MatrixStrainLimit::MatrixStrainLimit(StrainLimitTriangles limit)
     : limit_(std::move(limit)),
       set_(lower_bound(limit_.min, limit_.min * limit_.min), limit_.max * limit_.max),
-      stencils_(triangle_stencils(limit_.triangles)) {
+      stencils_(triangle_stencils(limit_.triangles)),
+      quads_(rest_quads(limit_.triangles)) {
   check(limit_);
 }
 
-void MatrixStrainLimit::evaluate(Index element, const double* x, double* c, double* jacobian) const {
+namespace {
+
+/// C = F^T F in the coordinates (C11, sqrt2 C12, C22) of one triangle or four, and where not null its Jacobian.
+template <class Real, class Shape>
+void evaluate_strain(const Shape& shape, const Real* x, Real* c, Real* jacobian) {
   constexpr double root2 = std::numbers::sqrt2;
-  const RestTriangle& triangle = limit_.triangles[element];
-  const Matrix32 f = triangle.deformation_gradient(x);
-  c[0] = f.col(0).squaredNorm();
-  c[1] = root2 * f.col(0).dot(f.col(1));
-  c[2] = f.col(1).squaredNorm();
+  const DeformationGradient<Real> f(x, shape);
+  c[0] = f.c11();
+  c[1] = root2 * f.c12();
+  c[2] = f.c22();
   if (!jacobian) return;
   for (int j = 0; j < 3; ++j) {
-    const double b1 = triangle.shape(j, 0), b2 = triangle.shape(j, 1);
+    const Real b1 = 2.0 * shape[j][0], b2 = 2.0 * shape[j][1], d1 = root2 * shape[j][0], d2 = root2 * shape[j][1];
     for (int axis = 0; axis < 3; ++axis) {
-      double* column = jacobian + 3 * (3 * j + axis);
-      column[0] = 2 * b1 * f(axis, 0);
-      column[1] = root2 * (b1 * f(axis, 1) + b2 * f(axis, 0));
-      column[2] = 2 * b2 * f(axis, 1);
+      Real* column = jacobian + 3 * (3 * j + axis);
+      column[0] = b1 * f.f1[axis];
+      column[1] = d1 * f.f2[axis] + d2 * f.f1[axis];
+      column[2] = b2 * f.f2[axis];
     }
   }
 }
 
+/// Of the multipliers times the coordinates above: diagonal blocks b_j . T b_k with T twice the multiplier matrix.
+template <class Real, class Shape>
+void strain_hessian(const Shape& shape, const Real* multipliers, Curvature curvature, Real* hessian) {
+  Symmetric2<Real> tension{2.0 * multipliers[0], std::numbers::sqrt2 * multipliers[1], 2.0 * multipliers[2]};
+  if (curvature == Curvature::positive_semidefinite) tension = positive_part(tension);
+  std::fill_n(hessian, 81, Real(0.0));
+  for (int j = 0; j < 3; ++j) {
+    const Real pulled1 = tension.a * shape[j][0] + tension.b * shape[j][1];
+    const Real pulled2 = tension.b * shape[j][0] + tension.c * shape[j][1];
+    for (int k = 0; k < 3; ++k) {
+      const Real entry = shape[k][0] * pulled1 + shape[k][1] * pulled2;
+      for (int axis = 0; axis < 3; ++axis) hessian[9 * (3 * k + axis) + 3 * j + axis] = entry;
+    }
+  }
+}
+
+}  // namespace
+
+void MatrixStrainLimit::evaluate(Index element, const double* x, double* c, double* jacobian) const {
+  evaluate_strain(limit_.triangles[element].shape_rows(), x, c, jacobian);
+}
+
+void MatrixStrainLimit::evaluate_four(Index quad, const Pack* x, Pack* c, Pack* jacobian) const {
+  evaluate_strain(quads_[quad].shape, x, c, jacobian);
+}
+
 void MatrixStrainLimit::hessian(Index element, const double* /*x*/, const double* multipliers, Curvature curvature,
                                 double* hessian) const {
-  const TriangleShape& shape = limit_.triangles[element].shape;
-  Matrix2 tension;
-  tension << multipliers[0], multipliers[1] / std::numbers::sqrt2, multipliers[1] / std::numbers::sqrt2, multipliers[2];
-  if (curvature == Curvature::positive_semidefinite) tension = positive_part(tension);
-  Eigen::Map<Matrix9> h(hessian);
-  h.setZero();
-  for (int j = 0; j < 3; ++j) {
-    const Vector2 pulled = 2 * tension * shape.row(j).transpose();
-    for (int k = 0; k < 3; ++k) h.block<3, 3>(3 * j, 3 * k).diagonal().setConstant(shape.row(k).dot(pulled));
-  }
+  strain_hessian(limit_.triangles[element].shape_rows(), multipliers, curvature, hessian);
+}
+
+void MatrixStrainLimit::hessian_four(Index quad, const Pack* /*x*/, const Pack* multipliers, Curvature curvature,
+                                     Pack* hessian) const {
+  strain_hessian(quads_[quad].shape, multipliers, curvature, hessian);
 }
 
 double MatrixStrainLimit::largest_step(Index /*element*/, const double* x, const double* dx) const {

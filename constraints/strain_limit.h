@@ -38,6 +38,10 @@ class MatrixStrainLimit final : public Constraint {
   void evaluate(Index element, const double* x, double* c, double* jacobian) const override;
   void hessian(Index element, const double* x, const double* multipliers, Curvature curvature,
                double* hessian) const override;
+  bool takes_four() const override { return true; }
+  void evaluate_four(Index quad, const Pack* x, Pack* c, Pack* jacobian) const override;
+  void hessian_four(Index quad, const Pack* x, const Pack* multipliers, Curvature curvature,
+                    Pack* hessian) const override;
   double violation(Index element, const double* x) const override { return limit_.violation(element, x); }
   std::string element_name(Index element) const override { return limit_.element_name(element); }
   /// Under a lower limit collapse is a stationary saddle of C: steps are kept from reaching it.
@@ -49,6 +53,7 @@ class MatrixStrainLimit final : public Constraint {
   StrainLimitTriangles limit_;
   SpectralBox set_;
   Stencils stencils_{9};
+  std::vector<RestQuad> quads_;
 };
 
 /// The limit with one multiplier per singular value, as in SL: rows (d1, d2), each in [dmin, dmax], gradients by SL

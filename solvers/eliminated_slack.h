@@ -64,6 +64,10 @@ class EliminatedSlack final : public Energy {
   const Stencils& stencils() const override { return constraint_.stencils(); }
   double evaluate(Index element, const double* x, double* gradient, double* hessian,
                   Curvature curvature) const override;
+  bool takes_four(Curvature /*curvature*/) const override {
+    return linearisation_ == Linearisation::central_path && constraint_.takes_four();
+  }
+  Pack evaluate_four(Index quad, const Pack* x, Pack* gradient, Pack* hessian, Curvature curvature) const override;
   bool guards_steps() const override { return !is_left_out() && constraint_.guards_steps(); }
   double largest_step(Index element, const double* x, const double* dx) const override {
     return constraint_.largest_step(element, x, dx);
@@ -72,12 +76,16 @@ class EliminatedSlack final : public Energy {
  private:
   struct Path;
   bool left_out(Index element) const { return left_out_[static_cast<std::size_t>(element)] != 0; }
-  void path_gradient(Index element, const double* lambda, double* gradient) const;
+  void quad_multipliers(Index quad, Pack* lambda) const;
+  Pack quad_weights(Index quad) const;
+  bool quad_left_out(Index quad) const;
+  void linearise(Index quad, const Pack* x, const Pack* lambda);
   double evaluate_path(Index element, const double* x, double* gradient, double* hessian, Curvature curvature) const;
 
   const Constraint& constraint_;
   Vector multipliers_;
   double penalty_ = 1;
+  Vector weights_;              ///< per element
   std::vector<char> left_out_;  ///< per element
   Index left_out_count_ = 0;
   Linearisation linearisation_ = Linearisation::augmented_lagrangian;

@@ -12,18 +12,36 @@
 namespace taut {
 namespace {
 
-/// As Energy::evaluate, of the sum of the term's energies.
-double evaluate(const AssemblyTerm& term, Index element, const double* x, double* gradient, double* hessian,
+/// Elements that are evaluated together as a Real: a block is one element, or a quad of them (pack.h).
+template <class Real>
+constexpr int lanes = sizeof(Real) / sizeof(double);
+
+double evaluate(const Energy& energy, Index element, const double* x, double* gradient, double* hessian,
                 Curvature curvature) {
+  return energy.evaluate(element, x, gradient, hessian, curvature);
+}
+Pack evaluate(const Energy& energy, Index quad, const Pack* x, Pack* gradient, Pack* hessian, Curvature curvature) {
+  return energy.evaluate_four(quad, x, gradient, hessian, curvature);
+}
+
+double* doubles(double* reals) { return reals; }
+double* doubles(Pack* reals) { return reinterpret_cast<double*>(reals); }
+const double* doubles(const double* reals) { return reals; }
+const double* doubles(const Pack* reals) { return reinterpret_cast<const double*>(reals); }
+
+/// As Energy::evaluate, of the sum of the term's energies.
+template <class Real>
+Real evaluate(const AssemblyTerm& term, Index block, const Real* x, Real* gradient, Real* hessian,
+              Curvature curvature) {
   const auto& energies = term.energies;
-  double value = energies.front()->evaluate(element, x, gradient, hessian, curvature);
+  Real value = evaluate(*energies.front(), block, x, gradient, hessian, curvature);
   if (energies.size() == 1) return value;
   const int width = term.stencils().width();
-  Scratch<max_stencil_width> more_gradient(width);
-  Scratch<max_stencil_width * max_stencil_width> more_hessian(width * width);
+  Scratch<max_stencil_width, Real> more_gradient(width);
+  Scratch<max_stencil_width * max_stencil_width, Real> more_hessian(width * width);
   for (std::size_t k = 1; k < energies.size(); ++k) {
-    value += energies[k]->evaluate(element, x, gradient ? more_gradient.data() : nullptr,
-                                   hessian ? more_hessian.data() : nullptr, curvature);
+    value += evaluate(*energies[k], block, x, gradient ? more_gradient.data() : nullptr,
+                      hessian ? more_hessian.data() : nullptr, curvature);
     if (gradient) {
       for (int i = 0; i < width; ++i) gradient[i] += more_gradient[i];
     }
@@ -34,13 +52,34 @@ double evaluate(const AssemblyTerm& term, Index element, const double* x, double
   return value;
 }
 
-/// Calls visit(element) for each element of the term that `thread` of `threads` has to see, in ascending order.
-template <class Visit>
-void for_elements(const AssemblyTerm& term, int thread, int threads, const Visit& visit) {
+/// Calls visit(element, lane) for each element of a block.
+template <class Real, class Visit>
+void for_lanes(const AssemblyTerm& term, Index block, const Visit& visit) {
+  for (int lane = 0; lane < lanes<Real>; ++lane) {
+    const Index element = block * lanes<Real> + lane;
+    if (element < term.stencils().count()) visit(element, lane);
+  }
+}
+
+/// Calls visit(block) for each block of the term that `thread` of `threads` has to see, in ascending order.
+template <class Real, class Visit>
+void for_blocks(const AssemblyTerm& term, int thread, int threads, const Visit& visit) {
   if (threads == 1) {
-    for (Index element = 0; element < term.stencils().count(); ++element) visit(element);
+    const Index count = term.stencils().count(), blocks = lanes<Real> == 1 ? count : quads(count);
+    for (Index block = 0; block < blocks; ++block) visit(block);
   } else {
-    for (int element : term.elements[static_cast<std::size_t>(thread)]) visit(Index{element});
+    const auto& mine = lanes<Real> == 1 ? term.elements : term.quads;
+    for (const int block : mine[static_cast<std::size_t>(thread)]) visit(Index{block});
+  }
+}
+
+/// task(double()) or task(Pack()): how the elements of a term are evaluated.
+template <class Task>
+void one_or_four(bool four, const Task& task) {
+  if (four) {
+    task(Pack());
+  } else {
+    task(double());
   }
 }
 
@@ -50,9 +89,13 @@ struct Assembly::Data : AssemblyPattern {
   using AssemblyPattern::AssemblyPattern;
 
   double sum_of_values() const;
+  template <class Real>
   void mask(const AssemblyTerm& term, Index element, double* hessian) const;
   template <int B>
   void add_hessian(int thread, const Vector& x, Curvature curvature, Vector* gradient);
+  template <int B, class Real>
+  void add_term(const AssemblyTerm& term, int thread, const Vector& x, Curvature curvature, Vector* gradient);
+  template <class Real>
   void add_local_gradient(const AssemblyTerm& term, Index element, int thread, const double* part,
                           Vector& gradient) const;
   void clear_fixed(Vector& gradient) const;
@@ -83,12 +126,17 @@ double Assembly::value(const Vector& x) const {
   parallel_for(d.threads, [&](int thread) {
     for (const AssemblyTerm& term : d.terms) {
       const Stencils& stencils = term.stencils();
-      Scratch<max_stencil_width> local(stencils.width());
-      const Index first = stencils.count() * thread / d.threads, last = stencils.count() * (thread + 1) / d.threads;
-      for (Index element = first; element < last; ++element) {
-        stencils.gather(element, x, local.data());
-        term.values[element] = evaluate(term, element, local.data(), nullptr, nullptr, Curvature::exact);
-      }
+      one_or_four(term.takes_four(Curvature::positive_semidefinite), [&]<class Real>(Real) {
+        Scratch<max_stencil_width, Real> local(stencils.width());
+        for_blocks<Real>(term, thread, d.threads, [&](Index block) {
+          stencils.gather(block, x, local.data());
+          Real* none = nullptr;
+          const Real value = evaluate(term, block, local.data(), none, none, Curvature::positive_semidefinite);
+          for_lanes<Real>(term, block, [&](Index element, int lane) {
+            if (term.primary[element] == thread) term.values[element] = doubles(&value)[lane];
+          });
+        });
+      });
     }
   });
   return d.sum_of_values();
@@ -100,12 +148,17 @@ double Assembly::gradient(const Vector& x, Vector& gradient) const {
   parallel_for(d.threads, [&](int thread) {
     for (const AssemblyTerm& term : d.terms) {
       const Stencils& stencils = term.stencils();
-      Scratch<max_stencil_width> local(stencils.width()), part(stencils.width());
-      for_elements(term, thread, d.threads, [&](Index element) {
-        stencils.gather(element, x, local.data());
-        const double value = evaluate(term, element, local.data(), part.data(), nullptr, Curvature::exact);
-        if (term.primary[element] == thread) term.values[element] = value;
-        d.add_local_gradient(term, element, thread, part.data(), gradient);
+      one_or_four(term.takes_four(Curvature::positive_semidefinite), [&]<class Real>(Real) {
+        Scratch<max_stencil_width, Real> local(stencils.width()), part(stencils.width());
+        for_blocks<Real>(term, thread, d.threads, [&](Index block) {
+          stencils.gather(block, x, local.data());
+          Real* none = nullptr;
+          const Real value = evaluate(term, block, local.data(), part.data(), none, Curvature::positive_semidefinite);
+          for_lanes<Real>(term, block, [&](Index element, int lane) {
+            if (term.primary[element] == thread) term.values[element] = doubles(&value)[lane];
+            d.add_local_gradient<Real>(term, element, thread, doubles(part.data()) + lane, gradient);
+          });
+        });
       });
     }
   });
@@ -113,14 +166,15 @@ double Assembly::gradient(const Vector& x, Vector& gradient) const {
   return d.sum_of_values();
 }
 
-/// Adds those entries of an element's gradient that `thread` owns.
+/// Adds those entries of an element's gradient, one lane of Reals, that `thread` owns.
+template <class Real>
 void Assembly::Data::add_local_gradient(const AssemblyTerm& term, Index element, int thread, const double* part,
                                         Vector& gradient) const {
   const int* variables = term.stencils()[element];
   for (int k = 0; k < term.groups; ++k) {
     const int p = position[variables[k * group_size] / group_size];
     if (p < range[thread] || p >= range[thread + 1]) continue;
-    for (int i = k * group_size; i < (k + 1) * group_size; ++i) gradient[variables[i]] += part[i];
+    for (int i = k * group_size; i < (k + 1) * group_size; ++i) gradient[variables[i]] += part[i * lanes<Real>];
   }
 }
 
@@ -132,46 +186,60 @@ void Assembly::Data::clear_fixed(Vector& gradient) const {
   }
 }
 
-/// Clears the rows and columns of fixed variables in a local Hessian.
+/// Clears the rows and columns of fixed variables in a local Hessian, one lane of Reals.
+template <class Real>
 void Assembly::Data::mask(const AssemblyTerm& term, Index element, double* hessian) const {
   const Stencils& stencils = term.stencils();
   const int width = stencils.width();
   for (int i = 0; i < width; ++i) {
     if (!fixed[stencils[element][i]]) continue;
-    for (int j = 0; j < width; ++j) hessian[i + j * width] = hessian[j + i * width] = 0;
+    for (int j = 0; j < width; ++j) hessian[(i + j * width) * lanes<Real>] = hessian[(j + i * width) * lanes<Real>] = 0;
   }
 }
 
 template <int B>
 void Assembly::Data::add_hessian(int thread, const Vector& x, Curvature curvature, Vector* total) {
   double* values = matrix.valuePtr();
-  const int first = matrix.outerIndexPtr()[range[thread] * B], last = matrix.outerIndexPtr()[range[thread + 1] * B];
-  std::fill(values + first, values + last, 0.0);
+  const int* starts = matrix.outerIndexPtr();
+  std::fill(values + starts[range[thread] * B], values + starts[range[thread + 1] * B], 0.0);
   for (const AssemblyTerm& term : terms) {
-    const bool curved = term.has_curvature();
-    if (!curved && !total) continue;
-    const Stencils& stencils = term.stencils();
-    const int width = stencils.width(), blocks = term.groups * (term.groups + 1) / 2;
-    Scratch<max_stencil_width> local(width), gradient(width);
-    Scratch<max_stencil_width * max_stencil_width> hessian(width * width);
-    for_elements(term, thread, threads, [&](Index element) {
-      stencils.gather(element, x, local.data());
-      evaluate(term, element, local.data(), gradient.data(), curved ? hessian.data() : nullptr, curvature);
-      if (total) add_local_gradient(term, element, thread, gradient.data(), *total);
+    if (!term.has_curvature() && !total) continue;
+    one_or_four(term.takes_four(curvature),
+                [&]<class Real>(Real) { add_term<B, Real>(term, thread, x, curvature, total); });
+  }
+}
+
+template <int B, class Real>
+void Assembly::Data::add_term(const AssemblyTerm& term, int thread, const Vector& x, Curvature curvature,
+                              Vector* total) {
+  double* values = matrix.valuePtr();
+  const int first = matrix.outerIndexPtr()[range[thread] * B], last = matrix.outerIndexPtr()[range[thread + 1] * B];
+  const bool curved = term.has_curvature();
+  const Stencils& stencils = term.stencils();
+  const int width = stencils.width(), blocks = term.groups * (term.groups + 1) / 2;
+  constexpr int step = lanes<Real>;
+  Scratch<max_stencil_width, Real> local(width), gradient(width);
+  Scratch<max_stencil_width * max_stencil_width, Real> hessian(width * width);
+  for_blocks<Real>(term, thread, threads, [&](Index block) {
+    stencils.gather(block, x, local.data());
+    evaluate(term, block, local.data(), gradient.data(), curved ? hessian.data() : nullptr, curvature);
+    for_lanes<Real>(term, block, [&](Index element, int lane) {
+      if (total) add_local_gradient<Real>(term, element, thread, doubles(gradient.data()) + lane, *total);
       if (!curved) return;
-      if (term.masked[element]) mask(term, element, hessian.data());
+      double* entries = doubles(hessian.data()) + lane;
+      if (term.masked[element]) mask<Real>(term, element, entries);
       const BlockSlot* slot = term.slots.data() + element * blocks;
       for (int k = 0; k < blocks; ++k, ++slot) {
         if (slot->start < first || slot->start >= last) continue;
         for (int c = 0; c < B; ++c) {
           // Not the same memory, which the compiler cannot know and has to before it may add two rows at once.
           double* __restrict__ target = values + slot->start + c * slot->stride;
-          const double* __restrict__ source = hessian.data() + (slot->column + c) * width + slot->row;
-          for (int r = 0; r < B; ++r) target[r] += source[r];
+          const double* __restrict__ source = entries + ((slot->column + c) * width + slot->row) * step;
+          for (int r = 0; r < B; ++r) target[r] += source[r * step];
         }
       }
     });
-  }
+  });
 }
 
 void Assembly::clear_fixed(Vector& gradient) const {

@@ -179,6 +179,7 @@ void AssemblyPattern::share_out() {
     term.values.assign(stencils.count(), 0.0);
     term.primary.assign(stencils.count(), 0);
     term.elements.assign(threads, {});
+    term.quads.assign(threads, {});
     if (threads == 1) continue;
     std::vector<char> seen(threads);
     for (Index element = 0; element < stencils.count(); ++element) {
@@ -193,7 +194,10 @@ void AssemblyPattern::share_out() {
       }
       if (!any) seen[0] = 1;
       for (int t = 0; t < threads; ++t) {
-        if (seen[t]) term.elements[t].push_back(static_cast<int>(element));
+        if (!seen[t]) continue;
+        const int quad = static_cast<int>(element) / Pack::size;
+        term.elements[t].push_back(static_cast<int>(element));
+        if (term.quads[t].empty() || term.quads[t].back() != quad) term.quads[t].push_back(quad);
       }
     }
   }
@@ -221,7 +225,9 @@ std::size_t AssemblyPattern::memory_bytes() const {
   std::size_t bytes = static_cast<std::size_t>(matrix.nonZeros()) * (sizeof(double) + sizeof(int));
   for (const AssemblyTerm& term : terms) {
     bytes += term.slots.size() * sizeof(BlockSlot) + term.values.size() * (sizeof(double) + 2);
-    for (const auto& list : term.elements) bytes += list.size() * sizeof(int);
+    for (const auto* lists : {&term.elements, &term.quads}) {
+      for (const auto& list : *lists) bytes += list.size() * sizeof(int);
+    }
   }
   return bytes;
 }

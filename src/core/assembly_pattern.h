@@ -23,6 +23,7 @@ struct AssemblyTerm {
   std::vector<BlockSlot> slots;            // per element: groups (groups + 1) / 2, empty where there is no curvature
   std::vector<char> masked;                // per element: touches a partly fixed group
   std::vector<std::vector<int>> elements;  // per thread, with two or more threads
+  std::vector<std::vector<int>> quads;     // the same in quads of elements
   std::vector<unsigned char> primary;      // per element: the one thread that writes its value
   mutable std::vector<double> values;      // per element
 
@@ -30,6 +31,10 @@ struct AssemblyTerm {
   bool has_curvature() const { return energies.front()->has_curvature(); }
   bool couples_weakly() const {
     return std::all_of(energies.begin(), energies.end(), [](const Energy* energy) { return energy->couples_weakly(); });
+  }
+  bool takes_four(Curvature curvature) const {
+    return std::all_of(energies.begin(), energies.end(),
+                       [&](const Energy* energy) { return energy->takes_four(curvature); });
   }
   bool takes(const Energy& energy) const {
     return has_curvature() == energy.has_curvature() && stencils() == energy.stencils();

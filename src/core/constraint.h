@@ -28,6 +28,17 @@ class Constraint {
   virtual void hessian(Index element, const double* x, const double* multipliers, Curvature curvature,
                        double* hessian) const = 0;
 
+  /// True where evaluate_four() and hessian_four() serve, and its set's project_smoothed_four().
+  virtual bool takes_four() const { return false; }
+  /// evaluate() and hessian() for a quad of elements at once (pack.h), lane by lane; c and jacobian are both required.
+  virtual void evaluate_four(Index /*quad*/, const Pack* /*x*/, Pack* /*c*/, Pack* /*jacobian*/) const {
+    throw std::logic_error(name() + " takes no four elements at once");
+  }
+  virtual void hessian_four(Index /*quad*/, const Pack* /*x*/, const Pack* /*multipliers*/, Curvature /*curvature*/,
+                            Pack* /*hessian*/) const {
+    throw std::logic_error(name() + " takes no four elements at once");
+  }
+
   /// How far the element is outside, in the units a person thinks in (singular values, metres); 0 inside.
   virtual double violation(Index element, const double* x) const = 0;
   /// What a violation of "one" means: 1 for singular values, the scene's size for lengths.

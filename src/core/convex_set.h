@@ -1,5 +1,8 @@
 #pragma once
 
+#include <stdexcept>
+
+#include "core/pack.h"
 #include "core/types.h"
 
 namespace taut {
@@ -28,6 +31,12 @@ class ConvexSet {
   /// Kanzow 1996; Smale 1987]
   virtual void project_smoothed(Index element, const double* z, double epsilon, double* nearest, double* inverse,
                                 double* rate) const = 0;
+
+  /// The same for a quad of elements at once (pack.h), lane by lane.
+  virtual void project_smoothed_four(Index /*quad*/, const Pack* /*z*/, double /*epsilon*/, Pack* /*nearest*/,
+                                     Pack* /*inverse*/, Pack* /*rate*/) const {
+    throw std::logic_error("this set takes no four elements at once");
+  }
 
   /// The same set as smooth scalar rows lower_i <= g_i(z) <= upper_i, for solvers that know nothing else. The rows may
   /// be as many as their implementer likes up to max_smooth_rows, and need a constraint qualification that the set

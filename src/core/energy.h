@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <stdexcept>
 #include <string>
 
 #include "core/stencils.h"
@@ -25,6 +26,14 @@ class Energy {
   /// gradient. A point outside the domain gives +infinity or NaN, never an exception.
   virtual double evaluate(Index element, const double* x, double* gradient, double* hessian,
                           Curvature curvature) const = 0;
+
+  /// True where evaluate_four() serves for this curvature.
+  virtual bool takes_four(Curvature /*curvature*/) const { return false; }
+  /// evaluate() for a quad of elements at once (pack.h), lane by lane.
+  virtual Pack evaluate_four(Index /*quad*/, const Pack* /*x*/, Pack* /*gradient*/, Pack* /*hessian*/,
+                             Curvature /*curvature*/) const {
+    throw std::logic_error(name() + " takes no four elements at once");
+  }
 
   /// False for terms that are linear in x: they are left out of the Hessian's pattern.
   virtual bool has_curvature() const { return true; }

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "core/pack.h"
 #include "core/types.h"
 
 namespace taut {
@@ -28,6 +29,12 @@ class Stencils {
   void gather(Index element, const Vector& x, double* local) const {
     const int* variables = (*this)[element];
     for (int i = 0; i < width_; ++i) local[i] = x[variables[i]];
+  }
+  /// The same for a quad of elements (pack.h).
+  void gather(Index quad, const Vector& x, Pack* local) const {
+    const int* variables[Pack::size];
+    for (int lane = 0; lane < Pack::size; ++lane) variables[lane] = (*this)[element_of(quad, lane, count())];
+    for (int i = 0; i < width_; ++i) local[i] = lanes_of([&](int lane) { return x[variables[lane][i]]; });
   }
 
  private:

@@ -8,7 +8,6 @@
 namespace taut {
 namespace {
 
-using Vector12 = Eigen::Matrix<double, 12, 1>;
 using Matrix12 = Eigen::Matrix<double, 12, 12>;
 
 Matrix3 cross_matrix(const Vector3& v) {
@@ -152,39 +151,72 @@ std::vector<Hinge> make_hinges(const std::vector<Triangle>& triangles,
 HingeBending::HingeBending(std::string name, std::vector<Hinge> hinges)
     : name_(std::move(name)), hinges_(std::move(hinges)) {
   for (const Hinge& hinge : hinges_) stencils_.add_vertices(hinge.vertices);
+  const auto count = static_cast<Index>(hinges_.size());
+  for (Index quad = 0; quad < quads(count); ++quad) {
+    const auto hinge = [&](int lane) -> const Hinge& { return hinges_[element_of(quad, lane, count)]; };
+    quads_.push_back({lanes_of([&](int lane) { return hinge(lane).stiffness; }),
+                      lanes_of([&](int lane) { return hinge(lane).rest_angle; })});
+  }
+}
+
+namespace {
+
+/// Energy, gradient and the Gauss-Newton part of the Hessian of one hinge or four; with `off` = theta - rest on return.
+template <class Real>
+Real evaluate_hinge(Real stiffness, Real rest_angle, const Real* x, Real* gradient, Real* hessian, Real& off) {
+  const auto from_first = [&](int node) {
+    return std::array<Real, 3>{x[3 * node] - x[0], x[3 * node + 1] - x[1], x[3 * node + 2] - x[2]};
+  };
+  const auto dot = [](const std::array<Real, 3>& u, const std::array<Real, 3>& v) {
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+  };
+  const auto cross = [](const std::array<Real, 3>& u, const std::array<Real, 3>& v) {
+    return std::array<Real, 3>{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+  };
+  const auto e = from_first(1), a = from_first(2), b = from_first(3), n1 = cross(e, a), n2 = cross(b, e);
+  const Real length = square_root(dot(e, e));
+  off = arc_tangent(-length * dot(n1, b), dot(n1, n2)) - rest_angle;
+  const Real value = 0.5 * stiffness * off * off;
+  if (!gradient) return value;
+  const Real ta = dot(a, e) / length, tb = dot(b, e) / length, w1 = 1.0 / dot(n1, n1), w2 = 1.0 / dot(n2, n2);
+  std::array<Real, 12> slope;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Real turn1 = n1[axis] * w1, turn2 = n2[axis] * w2;
+    slope[axis] = (length - ta) * turn1 + (length - tb) * turn2;
+    slope[3 + axis] = ta * turn1 + tb * turn2;
+    slope[6 + axis] = -length * turn1;
+    slope[9 + axis] = -length * turn2;
+  }
+  for (int i = 0; i < 12; ++i) gradient[i] = stiffness * off * slope[i];
+  if (!hessian) return value;
+  for (int j = 0; j < 12; ++j) {
+    const Real factor = stiffness * slope[j];
+    for (int i = 0; i < 12; ++i) hessian[12 * j + i] = factor * slope[i];
+  }
+  return value;
+}
+
+}  // namespace
+
+Pack HingeBending::evaluate_four(Index quad, const Pack* x, Pack* gradient, Pack* hessian,
+                                 Curvature /*curvature*/) const {
+  Pack off;
+  return evaluate_hinge(quads_[quad].stiffness, quads_[quad].rest_angle, x, gradient, hessian, off);
 }
 
 double HingeBending::evaluate(Index element, const double* x, double* gradient, double* hessian,
                               Curvature curvature) const {
   const Hinge& hinge = hinges_[element];
-  const Eigen::Map<const Eigen::Matrix<double, 3, 4>> p(x);
-  const Vector3 e = p.col(1) - p.col(0), a = p.col(2) - p.col(0), b = p.col(3) - p.col(0);
-  const Vector3 n1 = e.cross(a), n2 = b.cross(e);
-  const double length = e.norm();
-  const double off = std::atan2(-length * n1.dot(b), n1.dot(n2)) - hinge.rest_angle;
-  if (gradient) {
-    const Vector3 w1 = n1 / n1.squaredNorm(), w2 = n2 / n2.squaredNorm();
-    const double ta = a.dot(e) / length, tb = b.dot(e) / length;
-    Vector12 slope;
-    for (int axis = 0; axis < 3; ++axis) {
-      slope[axis] = (length - ta) * w1[axis] + (length - tb) * w2[axis];
-      slope[3 + axis] = ta * w1[axis] + tb * w2[axis];
-      slope[6 + axis] = -length * w1[axis];
-      slope[9 + axis] = -length * w2[axis];
-    }
-    Eigen::Map<Vector12>{gradient} = hinge.stiffness * off * slope;
-    if (hessian) {
-      Eigen::Map<Matrix12> h(hessian);
-      h.noalias() = (hinge.stiffness * slope) * slope.transpose();
-      if (curvature == Curvature::exact) {
-        Matrix12 turn = Matrix12::Zero();
-        Side(p, 2).add_hessian(hinge.stiffness * off, turn);
-        Side(p, 3).add_hessian(hinge.stiffness * off, turn);
-        h += 0.5 * (turn + turn.transpose());
-      }
-    }
+  double off;
+  const double value = evaluate_hinge(hinge.stiffness, hinge.rest_angle, x, gradient, hessian, off);
+  if (hessian && curvature == Curvature::exact) {
+    const Eigen::Map<const Eigen::Matrix<double, 3, 4>> p(x);
+    Matrix12 turn = Matrix12::Zero();
+    Side(p, 2).add_hessian(hinge.stiffness * off, turn);
+    Side(p, 3).add_hessian(hinge.stiffness * off, turn);
+    Eigen::Map<Matrix12>{hessian} += 0.5 * (turn + turn.transpose());
   }
-  return 0.5 * hinge.stiffness * off * off;
+  return value;
 }
 
 }  // namespace taut

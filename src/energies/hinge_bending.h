@@ -40,12 +40,18 @@ class HingeBending final : public Energy {
   const Stencils& stencils() const override { return stencils_; }
   double evaluate(Index element, const double* x, double* gradient, double* hessian,
                   Curvature curvature) const override;
+  bool takes_four(Curvature curvature) const override { return curvature == Curvature::positive_semidefinite; }
+  Pack evaluate_four(Index quad, const Pack* x, Pack* gradient, Pack* hessian, Curvature curvature) const override;
   bool couples_weakly() const override { return true; }
   const std::vector<Hinge>& hinges() const { return hinges_; }
 
  private:
   std::string name_;
   std::vector<Hinge> hinges_;
+  struct Quad {
+    Pack stiffness, rest_angle;
+  };
+  std::vector<Quad> quads_;
   Stencils stencils_{12};
 };
 

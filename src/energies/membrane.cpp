@@ -17,50 +17,47 @@ Lame Lame::plane_stress(double young_modulus, double poisson_ratio) {
 Membrane::Membrane(std::string name, std::vector<RestTriangle> triangles, MembraneLaw law, Lame lame, double thickness)
     : name_(std::move(name)), triangles_(std::move(triangles)), law_(law), lame_(lame), thickness_(thickness) {
   for (const RestTriangle& triangle : triangles_) stencils_.add_vertices(triangle.vertices);
-}
-
-double Membrane::evaluate(Index element, const double* x, double* gradient, double* hessian,
-                          Curvature curvature) const {
-  const RestTriangle& triangle = triangles_[element];
-  return law_ == MembraneLaw::stvk ? evaluate_stvk(triangle, x, gradient, hessian, curvature)
-                                   : evaluate_neo_hookean(triangle, x, gradient, hessian, curvature);
+  if (law_ == MembraneLaw::stvk) quads_ = rest_quads(triangles_);
 }
 
 /// With h_j = F b_j, b_j the rows of the shape matrix, node blocks are mu ((b_j.b_k) F F^T + h_k h_j^T) + lambda h_j
-/// h_k^T + (b_j.S b_k) I. All but the last are positive semidefinite together, and the last is where S is.
-double Membrane::evaluate_stvk(const RestTriangle& triangle, const double* x, double* gradient, double* hessian,
-                               Curvature curvature) const {
-  const Matrix32 f = triangle.deformation_gradient(x);
-  const double weight = triangle.area * thickness_;
-  const double e11 = 0.5 * (f.col(0).squaredNorm() - 1), e22 = 0.5 * (f.col(1).squaredNorm() - 1),
-               e12 = 0.5 * f.col(0).dot(f.col(1));
-  const double trace = e11 + e22;
-  const double value =
-      weight * (lame_.mu * (e11 * e11 + e22 * e22 + 2 * e12 * e12) + 0.5 * lame_.lambda * trace * trace);
+/// h_k^T + (b_j.S b_k) I. All but the last are positive semidefinite together, and the last is where S is. `weight` is
+/// thickness times area, `shape` the three rows b_j.
+template <class Real, class Shape>
+Real Membrane::evaluate_stvk(const Shape& shape, Real weight, const Real* x, Real* gradient, Real* hessian,
+                             Curvature curvature) const {
+  const DeformationGradient<Real> f(x, shape);
+  const Real mu = weight * lame_.mu, lambda = weight * lame_.lambda;
+  const Real e11 = 0.5 * (f.c11() - 1.0), e22 = 0.5 * (f.c22() - 1.0), e12 = 0.5 * f.c12(), trace = e11 + e22;
+  const Real value = mu * (e11 * e11 + e22 * e22 + 2.0 * e12 * e12) + 0.5 * lambda * trace * trace;
   if (!gradient) return value;
-  // First Piola-Kirchhoff stress P = F S with S = 2 mu E + lambda tr(E) I.
-  Matrix2 s;
-  s(0, 0) = weight * (2 * lame_.mu * e11 + lame_.lambda * trace);
-  s(1, 1) = weight * (2 * lame_.mu * e22 + lame_.lambda * trace);
-  s(0, 1) = s(1, 0) = weight * 2 * lame_.mu * e12;
-  const Matrix32 p = f * s;
-  Eigen::Map<Matrix3>(gradient).noalias() = p * triangle.shape.transpose();
+  // First Piola-Kirchhoff stress F S with S = 2 mu E + lambda tr(E) I.
+  Symmetric2<Real> s{2.0 * mu * e11 + lambda * trace, 2.0 * mu * e12, 2.0 * mu * e22 + lambda * trace};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Real p1 = f.f1[axis] * s.a + f.f2[axis] * s.b, p2 = f.f1[axis] * s.b + f.f2[axis] * s.c;
+    for (int j = 0; j < 3; ++j) gradient[3 * j + axis] = p1 * shape[j][0] + p2 * shape[j][1];
+  }
   if (!hessian) return value;
   if (curvature == Curvature::positive_semidefinite) s = positive_part(s);
-  const double mu = weight * lame_.mu, lambda = weight * lame_.lambda;
-  const Matrix3 square = mu * (f * f.transpose()), h = f * triangle.shape.transpose();
+  std::array<std::array<Real, 3>, 3> square, h;  // mu F F^T, h_j
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      square[i][k] = mu * (f.f1[i] * f.f1[k] + f.f2[i] * f.f2[k]);
+      h[k][i] = f.f1[i] * shape[k][0] + f.f2[i] * shape[k][1];
+    }
+  }
   for (int j = 0; j < 3; ++j) {
-    const Vector2 b = triangle.shape.row(j), sb = s * b;
-    const double* hj = h.data() + 3 * j;
+    const auto& b = shape[j];
+    const Real sb1 = s.a * b[0] + s.b * b[1], sb2 = s.b * b[0] + s.c * b[1];
     for (int k = 0; k <= j; ++k) {
-      const double inner = b.dot(triangle.shape.row(k)), geometric = sb.dot(triangle.shape.row(k));
-      const double* hk = h.data() + 3 * k;
-      double* lower = hessian + 27 * k + 3 * j;
-      double* upper = hessian + 27 * j + 3 * k;
+      const Real inner = b[0] * shape[k][0] + b[1] * shape[k][1];
+      const Real geometric = sb1 * shape[k][0] + sb2 * shape[k][1];
+      Real* lower = hessian + 27 * k + 3 * j;
+      Real* upper = hessian + 27 * j + 3 * k;
       for (int column = 0; column < 3; ++column) {
-        const double mu_h = mu * hj[column], lambda_h = lambda * hk[column];
+        const Real mu_h = mu * h[j][column], lambda_h = lambda * h[k][column];
         for (int row = 0; row < 3; ++row) {
-          double entry = inner * square(row, column) + hk[row] * mu_h + hj[row] * lambda_h;
+          Real entry = inner * square[row][column] + h[k][row] * mu_h + h[j][row] * lambda_h;
           if (row == column) entry += geometric;
           lower[9 * column + row] = entry;
           upper[9 * row + column] = entry;
@@ -69,6 +66,18 @@ double Membrane::evaluate_stvk(const RestTriangle& triangle, const double* x, do
     }
   }
   return value;
+}
+
+double Membrane::evaluate(Index element, const double* x, double* gradient, double* hessian,
+                          Curvature curvature) const {
+  const RestTriangle& triangle = triangles_[element];
+  if (law_ == MembraneLaw::neo_hookean) return evaluate_neo_hookean(triangle, x, gradient, hessian, curvature);
+  return evaluate_stvk(triangle.shape_rows(), triangle.area * thickness_, x, gradient, hessian, curvature);
+}
+
+Pack Membrane::evaluate_four(Index quad, const Pack* x, Pack* gradient, Pack* hessian, Curvature curvature) const {
+  const RestQuad& four = quads_[quad];
+  return evaluate_stvk(four.shape, four.area * thickness_, x, gradient, hessian, curvature);
 }
 
 double Membrane::evaluate_neo_hookean(const RestTriangle& triangle, const double* x, double* gradient, double* hessian,

@@ -30,6 +30,8 @@ class Membrane final : public Energy {
   const Stencils& stencils() const override { return stencils_; }
   double evaluate(Index element, const double* x, double* gradient, double* hessian,
                   Curvature curvature) const override;
+  bool takes_four(Curvature /*curvature*/) const override { return law_ == MembraneLaw::stvk; }
+  Pack evaluate_four(Index quad, const Pack* x, Pack* gradient, Pack* hessian, Curvature curvature) const override;
   bool guards_steps() const override { return law_ == MembraneLaw::neo_hookean; }
   double largest_step(Index element, const double* x, const double* dx) const override;
   const std::vector<RestTriangle>& triangles() const { return triangles_; }
@@ -38,13 +40,15 @@ class Membrane final : public Energy {
   double thickness() const { return thickness_; }
 
  private:
-  double evaluate_stvk(const RestTriangle& triangle, const double* x, double* gradient, double* hessian,
-                       Curvature curvature) const;
+  template <class Real, class Shape>
+  Real evaluate_stvk(const Shape& shape, Real weight, const Real* x, Real* gradient, Real* hessian,
+                     Curvature curvature) const;
   double evaluate_neo_hookean(const RestTriangle& triangle, const double* x, double* gradient, double* hessian,
                               Curvature curvature) const;
 
   std::string name_;
   std::vector<RestTriangle> triangles_;
+  std::vector<RestQuad> quads_;  // with the St. Venant-Kirchhoff law
   MembraneLaw law_;
   Lame lame_;
   double thickness_;

@@ -36,6 +36,20 @@ std::vector<RestTriangle> rest_triangles(const std::vector<Triangle>& triangles,
   return rest;
 }
 
+std::vector<RestQuad> rest_quads(const std::vector<RestTriangle>& triangles) {
+  const auto count = static_cast<Index>(triangles.size());
+  std::vector<RestQuad> packed(static_cast<std::size_t>(quads(count)));
+  for (Index quad = 0; quad < quads(count); ++quad) {
+    const auto triangle = [&](int lane) -> const RestTriangle& { return triangles[element_of(quad, lane, count)]; };
+    RestQuad& four = packed[quad];
+    for (int j = 0; j < 3; ++j) {
+      for (int k = 0; k < 2; ++k) four.shape[j][k] = lanes_of([&](int lane) { return triangle(lane).shape(j, k); });
+    }
+    four.area = lanes_of([&](int lane) { return triangle(lane).area; });
+  }
+  return packed;
+}
+
 std::vector<RestTriangle> rest_triangles(const std::vector<Triangle>& triangles,
                                          const std::vector<std::array<Vector2, 3>>& corners, int first_vertex) {
   if (corners.size() != triangles.size()) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/pack.h"
 #include "core/types.h"
 
 namespace taut {
@@ -36,6 +37,43 @@ inline Eigen2 eigen2(double a, double b, double c) {
   }
   pair.vectors << x, -y, y, x;
   return pair;
+}
+
+/// The symmetric matrix [a b; b c] of doubles, or four of them.
+template <class Real>
+struct Symmetric2 {
+  Real a, b, c;
+};
+
+/// The eigenvalues of such a matrix are mean + radius and mean - radius; cosine and sine are of twice the angle of the
+/// first one's eigenvector (1 and 0 where they coincide).
+template <class Real>
+struct Spectrum2 {
+  Real mean, radius, cosine, sine;
+
+  explicit Spectrum2(const Symmetric2<Real>& m) {
+    const Real half = 0.5 * (m.a - m.c);
+    mean = 0.5 * (m.a + m.c);
+    radius = square_root(half * half + m.b * m.b);
+    const auto apart = radius > Real(0.0);
+    const Real inverse = 1.0 / radius;
+    cosine = select(apart, half * inverse, Real(1.0));
+    sine = select(apart, m.b * inverse, Real(0.0));
+  }
+  Real high() const { return mean + radius; }
+  Real low() const { return mean - radius; }
+  /// The matrix with these eigenvalues instead, and the same eigenvectors.
+  Symmetric2<Real> with_values(Real first, Real second) const {
+    const Real middle = 0.5 * (first + second), deviation = 0.5 * (first - second);
+    return {middle + deviation * cosine, deviation * sine, middle - deviation * cosine};
+  }
+};
+
+/// The nearest positive semidefinite matrix to m: its eigenvalues below zero become zero.
+template <class Real>
+Symmetric2<Real> positive_part(const Symmetric2<Real>& m) {
+  const Spectrum2<Real> spectrum(m);
+  return spectrum.with_values(larger(spectrum.high(), Real(0.0)), larger(spectrum.low(), Real(0.0)));
 }
 
 /// The nearest positive semidefinite matrix to the symmetric `m`: its eigenvalues below zero become zero.
