@@ -12,6 +12,7 @@
 #include <string>
 
 #include "linalg/single_precision_factor.h"
+#include "linalg/subtree_cholesky.h"
 
 extern "C" void openblas_set_num_threads(int);
 
@@ -36,8 +37,8 @@ extern "C" void GOMP_parallel(void (*body)(void*), void* data, unsigned threads,
 namespace taut {
 namespace {
 
-/// Below this many unknowns a second BLAS thread costs more than it brings.
-constexpr Index blas_threads_from = 40000;
+/// From this many unknowns on a factorisation has subtrees that are worth a second thread.
+constexpr Index threads_from = 40000;
 
 struct Common {
   cholmod_common common;
@@ -149,6 +150,7 @@ struct Cholesky::Data {
   cholmod_factor* factor = nullptr;
   cholmod_dense *x = nullptr, *y = nullptr, *e = nullptr;
   int threads = 1, solve_threads = 1;
+  std::optional<SubtreeCholesky> subtrees;  // with two threads, from the first factorisation on
   double flops = 0, nonzeros = 0;
   std::optional<SinglePrecisionFactor> single;  // from the first rough solve on
   bool rounded = false;                         // it holds the last factor
@@ -163,7 +165,7 @@ struct Cholesky::Data {
 Cholesky::Cholesky(const SparseMatrix& lower, int threads, int solve_threads) : data_(std::make_unique<Data>()) {
   quiet_openmp();
   if (lower.rows() == 0) return;  // everything is fixed; CHOLMOD takes no empty matrix
-  data_->threads = lower.rows() >= blas_threads_from ? threads : 1;
+  data_->threads = lower.rows() >= threads_from ? threads : 1;
   data_->solve_threads = solve_threads;
   data_->c.common.method[0].ordering = CHOLMOD_NATURAL;
   data_->c.common.postorder = 0;
@@ -182,13 +184,22 @@ Cholesky& Cholesky::operator=(Cholesky&&) noexcept = default;
 bool Cholesky::factorize(const SparseMatrix& lower, double shift) {
   Data& d = *data_;
   if (lower.rows() == 0) return true;
-  openblas_set_num_threads(d.threads);
   const SerialRegions serial;
   d.rounded = false;
-  cholmod_sparse sparse = view(lower);
-  double beta[2] = {shift, 0.0};
-  cholmod_factorize_p(&sparse, beta, nullptr, 0, d.factor, &d.c.common);
-  if (d.c.common.status != CHOLMOD_OK || d.factor->minor < d.factor->n) return false;
+  if (d.threads > 1 && d.factor->is_super) {
+    if (!d.subtrees) {
+      cholmod_change_factor(CHOLMOD_REAL, true, true, true, true, d.factor, &d.c.common);  // room for its values
+      if (d.c.common.status != CHOLMOD_OK) throw std::bad_alloc();
+      d.subtrees.emplace(*d.factor, d.threads);
+    }
+    if (!d.subtrees->factorize(lower, shift)) return false;
+  } else {
+    openblas_set_num_threads(1);
+    cholmod_sparse sparse = view(lower);
+    double beta[2] = {shift, 0.0};
+    cholmod_factorize_p(&sparse, beta, nullptr, 0, d.factor, &d.c.common);
+    if (d.c.common.status != CHOLMOD_OK || d.factor->minor < d.factor->n) return false;
+  }
   // A NaN passes CHOLMOD's test for positive pivots; its condition estimate is 0 there, and at infinite pivots.
   return cholmod_rcond(d.factor, &d.c.common) > 0;
 }
