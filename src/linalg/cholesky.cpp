@@ -7,6 +7,7 @@
 
 #include <cstring>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -149,7 +150,7 @@ struct Cholesky::Data {
   Common c;
   cholmod_factor* factor = nullptr;
   cholmod_dense *x = nullptr, *y = nullptr, *e = nullptr;
-  int threads = 1, solve_threads = 1;
+  int threads = 1, rough_threads = 1;
   std::optional<SubtreeCholesky> subtrees;  // with two threads, from the first factorisation on
   double flops = 0, nonzeros = 0;
   std::optional<SinglePrecisionFactor> single;  // from the first rough solve on
@@ -162,11 +163,11 @@ struct Cholesky::Data {
   }
 };
 
-Cholesky::Cholesky(const SparseMatrix& lower, int threads, int solve_threads) : data_(std::make_unique<Data>()) {
+Cholesky::Cholesky(const SparseMatrix& lower, int threads) : data_(std::make_unique<Data>()) {
   quiet_openmp();
   if (lower.rows() == 0) return;  // everything is fixed; CHOLMOD takes no empty matrix
   data_->threads = lower.rows() >= threads_from ? threads : 1;
-  data_->solve_threads = solve_threads;
+  data_->rough_threads = threads;
   data_->c.common.method[0].ordering = CHOLMOD_NATURAL;
   data_->c.common.postorder = 0;
   cholmod_sparse sparse = view(lower);
@@ -225,7 +226,7 @@ void Cholesky::solve(const Vector& b, Vector& x) {
 void Cholesky::solve_roughly(const Vector& b, Vector& x) {
   Data& d = *data_;
   if (b.size() == 0 || !d.factor->is_super) return solve(b, x);
-  if (!d.single) d.single.emplace(*d.factor, d.solve_threads);
+  if (!d.single) d.single.emplace(*d.factor, d.rough_threads);
   if (!d.rounded) d.single->round();
   d.rounded = true;
   d.single->solve(b, x);
@@ -234,7 +235,9 @@ void Cholesky::solve_roughly(const Vector& b, Vector& x) {
 double Cholesky::factor_nonzeros() const { return data_->nonzeros; }
 double Cholesky::factor_flops() const { return data_->flops; }
 std::size_t Cholesky::memory_bytes() const {
-  return data_->c.common.memory_inuse + (data_->single ? data_->single->memory_bytes() : 0);
+  const Data& d = *data_;
+  return d.c.common.memory_inuse + (d.single ? d.single->memory_bytes() : 0) +
+         (d.subtrees ? d.subtrees->memory_bytes() : 0);
 }
 
 }  // namespace taut
