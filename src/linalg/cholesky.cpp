@@ -217,7 +217,7 @@ void Cholesky::solve(const Vector& b, Vector& x) {
   rhs.x = const_cast<double*>(b.data());
   rhs.xtype = CHOLMOD_REAL;
   rhs.dtype = CHOLMOD_DOUBLE;
-  openblas_set_num_threads(d.threads);
+  openblas_set_num_threads(1);
   const SerialRegions serial;
   cholmod_solve2(CHOLMOD_A, d.factor, &rhs, nullptr, &d.x, nullptr, &d.y, &d.e, &d.c.common);
   x = Eigen::Map<const Vector>(static_cast<const double*>(d.x->x), b.size());
