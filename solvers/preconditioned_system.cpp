@@ -92,7 +92,7 @@ PreconditionedSystem::PreconditionedSystem(const Assembly& assembly, const std::
     }
   }
   for (const int place : place_) diagonal_.push_back(slot(place, place));
-  factor_ = std::make_unique<Cholesky>(preconditioner_, 1, threads);  // its blocks are too small for more
+  factor_ = std::make_unique<Cholesky>(preconditioner_, threads);
 }
 
 bool PreconditionedSystem::pays(const Assembly& assembly) {

@@ -7,11 +7,13 @@
 
 #include <cstring>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "linalg/single_precision_factor.h"
+#include "linalg/subtree_cholesky.h"
 
 extern "C" void openblas_set_num_threads(int);
 
@@ -36,8 +38,8 @@ extern "C" void GOMP_parallel(void (*body)(void*), void* data, unsigned threads,
 namespace taut {
 namespace {
 
-/// Below this many unknowns a second BLAS thread costs more than it brings.
-constexpr Index blas_threads_from = 40000;
+/// From this many unknowns on a factorisation has subtrees that are worth a second thread.
+constexpr Index threads_from = 40000;
 
 struct Common {
   cholmod_common common;
@@ -148,7 +150,8 @@ struct Cholesky::Data {
   Common c;
   cholmod_factor* factor = nullptr;
   cholmod_dense *x = nullptr, *y = nullptr, *e = nullptr;
-  int threads = 1, solve_threads = 1;
+  int threads = 1, rough_threads = 1;
+  std::optional<SubtreeCholesky> subtrees;  // with two threads, from the first factorisation on
   double flops = 0, nonzeros = 0;
   std::optional<SinglePrecisionFactor> single;  // from the first rough solve on
   bool rounded = false;                         // it holds the last factor
@@ -160,11 +163,11 @@ struct Cholesky::Data {
   }
 };
 
-Cholesky::Cholesky(const SparseMatrix& lower, int threads, int solve_threads) : data_(std::make_unique<Data>()) {
+Cholesky::Cholesky(const SparseMatrix& lower, int threads) : data_(std::make_unique<Data>()) {
   quiet_openmp();
   if (lower.rows() == 0) return;  // everything is fixed; CHOLMOD takes no empty matrix
-  data_->threads = lower.rows() >= blas_threads_from ? threads : 1;
-  data_->solve_threads = solve_threads;
+  data_->threads = lower.rows() >= threads_from ? threads : 1;
+  data_->rough_threads = threads;
   data_->c.common.method[0].ordering = CHOLMOD_NATURAL;
   data_->c.common.postorder = 0;
   cholmod_sparse sparse = view(lower);
@@ -182,13 +185,22 @@ Cholesky& Cholesky::operator=(Cholesky&&) noexcept = default;
 bool Cholesky::factorize(const SparseMatrix& lower, double shift) {
   Data& d = *data_;
   if (lower.rows() == 0) return true;
-  openblas_set_num_threads(d.threads);
   const SerialRegions serial;
   d.rounded = false;
-  cholmod_sparse sparse = view(lower);
-  double beta[2] = {shift, 0.0};
-  cholmod_factorize_p(&sparse, beta, nullptr, 0, d.factor, &d.c.common);
-  if (d.c.common.status != CHOLMOD_OK || d.factor->minor < d.factor->n) return false;
+  if (d.threads > 1 && d.factor->is_super) {
+    if (!d.subtrees) {
+      cholmod_change_factor(CHOLMOD_REAL, true, true, true, true, d.factor, &d.c.common);  // room for its values
+      if (d.c.common.status != CHOLMOD_OK) throw std::bad_alloc();
+      d.subtrees.emplace(*d.factor, d.threads);
+    }
+    if (!d.subtrees->factorize(lower, shift)) return false;
+  } else {
+    openblas_set_num_threads(1);
+    cholmod_sparse sparse = view(lower);
+    double beta[2] = {shift, 0.0};
+    cholmod_factorize_p(&sparse, beta, nullptr, 0, d.factor, &d.c.common);
+    if (d.c.common.status != CHOLMOD_OK || d.factor->minor < d.factor->n) return false;
+  }
   // A NaN passes CHOLMOD's test for positive pivots; its condition estimate is 0 there, and at infinite pivots.
   return cholmod_rcond(d.factor, &d.c.common) > 0;
 }
@@ -205,7 +217,7 @@ void Cholesky::solve(const Vector& b, Vector& x) {
   rhs.x = const_cast<double*>(b.data());
   rhs.xtype = CHOLMOD_REAL;
   rhs.dtype = CHOLMOD_DOUBLE;
-  openblas_set_num_threads(d.threads);
+  openblas_set_num_threads(1);
   const SerialRegions serial;
   cholmod_solve2(CHOLMOD_A, d.factor, &rhs, nullptr, &d.x, nullptr, &d.y, &d.e, &d.c.common);
   x = Eigen::Map<const Vector>(static_cast<const double*>(d.x->x), b.size());
@@ -214,7 +226,7 @@ void Cholesky::solve(const Vector& b, Vector& x) {
 void Cholesky::solve_roughly(const Vector& b, Vector& x) {
   Data& d = *data_;
   if (b.size() == 0 || !d.factor->is_super) return solve(b, x);
-  if (!d.single) d.single.emplace(*d.factor, d.solve_threads);
+  if (!d.single) d.single.emplace(*d.factor, d.rough_threads);
   if (!d.rounded) d.single->round();
   d.rounded = true;
   d.single->solve(b, x);
@@ -223,7 +235,9 @@ void Cholesky::solve_roughly(const Vector& b, Vector& x) {
 double Cholesky::factor_nonzeros() const { return data_->nonzeros; }
 double Cholesky::factor_flops() const { return data_->flops; }
 std::size_t Cholesky::memory_bytes() const {
-  return data_->c.common.memory_inuse + (data_->single ? data_->single->memory_bytes() : 0);
+  const Data& d = *data_;
+  return d.c.common.memory_inuse + (d.single ? d.single->memory_bytes() : 0) +
+         (d.subtrees ? d.subtrees->memory_bytes() : 0);
 }
 
 }  // namespace taut

@@ -13,11 +13,11 @@ std::vector<int> fill_reducing_order(const GroupGraph& graph);
 
 /// Sparse Cholesky factor L L^T of a matrix whose pattern never changes (CHOLMOD, supernodal). The matrix comes in its
 /// final order, lower triangle (entries above the diagonal are ignored). One symbolic analysis, then any number of
-/// numeric factorisations into the same memory.
+/// numeric factorisations into the same memory. Large matrices are factorised on two threads by SubtreeCholesky.
 class Cholesky {
  public:
-  /// Analyses the pattern. `threads` is the most that the factorisation may use, `solve_threads` that rough solves do.
-  Cholesky(const SparseMatrix& lower, int threads, int solve_threads = 1);
+  /// Analyses the pattern. `threads` is the most that factorisations (of 40,000 rows or more) and rough solves may use.
+  Cholesky(const SparseMatrix& lower, int threads);
   ~Cholesky();
   Cholesky(Cholesky&&) noexcept;
   Cholesky& operator=(Cholesky&&) noexcept;

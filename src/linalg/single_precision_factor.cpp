@@ -2,22 +2,22 @@
 
 #include <cholmod.h>
 
-#include <algorithm>
-#include <numeric>
+#include <utility>
 
 #include "core/parallel.h"
 
 namespace taut {
-namespace {
-
-/// Whatever the number of threads, for the same bits. More would put more columns above all subtrees.
-constexpr std::size_t most_shares = 2;
-
-}  // namespace
 
 SinglePrecisionFactor::SinglePrecisionFactor(const cholmod_factor_struct& factor, int threads)
     : factor_(factor), threads_(threads), supernodes_(static_cast<int>(factor.nsuper)) {
-  share_out();
+  std::vector<double> entries;
+  for (int s = 0; s < supernodes_; ++s) {
+    const double rows = row_start()[s + 1] - row_start()[s], columns = first_column()[s + 1] - first_column()[s];
+    entries.push_back(rows * columns);
+  }
+  EliminationSubtrees division = elimination_subtrees(factor, entries);
+  top_ = std::move(division.top);
+  for (std::vector<Subtree>& subtrees : division.shares) shares_.push_back({std::move(subtrees), {}, {}});
   for (Share& share : shares_) {
     share.below.resize(static_cast<Index>(factor.maxesize));
     if (shares_.size() > 1) share.above.setZero(static_cast<Index>(factor.n));
@@ -41,72 +41,6 @@ Eigen::Map<const Eigen::MatrixXf> SinglePrecisionFactor::block(int supernode) co
   return {values_.data() + static_cast<const int*>(factor_.px)[supernode],
           row_start()[supernode + 1] - row_start()[supernode],
           first_column()[supernode + 1] - first_column()[supernode]};
-}
-
-/// Of every supernode the first of its subtree, which in postorder reaches from there to itself; empty where the
-/// columns are not in postorder.
-std::vector<int> SinglePrecisionFactor::first_descendants() const {
-  std::vector<int> first(supernodes_), count(supernodes_, 1);
-  std::iota(first.begin(), first.end(), 0);
-  for (int s = 0; s < supernodes_; ++s) {
-    if (first[s] != s - count[s] + 1) return {};
-    if (rows_below(s) == static_cast<const int*>(factor_.s) + row_start()[s + 1]) continue;  // a root
-    const int* columns = first_column();
-    const auto parent = std::upper_bound(columns, columns + supernodes_, *rows_below(s)) - columns - 1;
-    first[parent] = std::min(first[parent], first[s]);
-    count[parent] += count[s];
-  }
-  return first;
-}
-
-/// Takes the heaviest subtree apart, again and again, and keeps the division of which the columns above all subtrees
-/// and the heaviest share together have the least work.
-void SinglePrecisionFactor::share_out() {
-  shares_.resize(1);
-  top_.resize(supernodes_);
-  std::iota(top_.begin(), top_.end(), 0);
-  const std::vector<int> first = first_descendants();
-  if (first.empty()) return;
-
-  std::vector<double> entries(supernodes_ + 1, 0.0);  // of all supernodes before
-  for (int s = 0; s < supernodes_; ++s) {
-    const double rows = row_start()[s + 1] - row_start()[s], columns = first_column()[s + 1] - first_column()[s];
-    entries[s + 1] = entries[s] + rows * columns;
-  }
-  const auto subtree = [&](int root) {
-    return Subtree{first[root], root + 1, entries[root + 1] - entries[first[root]]};
-  };
-  const auto heavier = [](const Subtree& a, const Subtree& b) { return a.work > b.work; };
-
-  std::vector<Subtree> parts;
-  std::vector<int> top;
-  const auto take_apart = [&](int begin, int end) {  // into the subtrees of which begin ... end - 1 consists
-    for (int root = end - 1; root >= begin; root = first[root] - 1) parts.push_back(subtree(root));
-  };
-  take_apart(0, supernodes_);
-  double top_work = 0, best = entries.back();
-  while (!parts.empty() && parts.size() <= 8 * most_shares) {
-    std::sort(parts.begin(), parts.end(), heavier);
-    std::vector<Share> shares(most_shares);
-    const auto lighter = [](const Share& a, const Share& b) { return a.work < b.work; };
-    for (const Subtree& part : parts) {
-      Share& least = *std::min_element(shares.begin(), shares.end(), lighter);
-      least.subtrees.push_back(part);
-      least.work += part.work;
-    }
-    const double work = top_work + std::max_element(shares.begin(), shares.end(), lighter)->work;
-    if (work < best) {
-      best = work;
-      shares_ = std::move(shares);
-      top_ = top;
-    }
-    const Subtree heaviest = parts.front();
-    parts.erase(parts.begin());
-    top.push_back(heaviest.end - 1);
-    top_work += entries[heaviest.end] - entries[heaviest.end - 1];
-    take_apart(heaviest.begin, heaviest.end - 1);
-  }
-  std::sort(top_.begin(), top_.end());
 }
 
 /// Solves L y = b in place on some supernodes. What they take from columns at or after `end_column` is kept.

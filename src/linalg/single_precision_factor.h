@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/types.h"
+#include "linalg/elimination_subtrees.h"
 
 struct cholmod_factor_struct;
 
@@ -24,15 +25,9 @@ class SinglePrecisionFactor {
   std::size_t memory_bytes() const { return static_cast<std::size_t>(values_.size()) * sizeof(float); }
 
  private:
-  /// Supernodes begin ... end - 1; `work` is the number of their entries.
-  struct Subtree {
-    int begin, end;
-    double work;
-  };
   /// Subtrees that one thread sees to, with its scratch.
   struct Share {
     std::vector<Subtree> subtrees;
-    double work = 0;
     Eigen::VectorXf below;  // the rows of one supernode that are not its own columns
     Eigen::VectorXf above;  // per column: what the subtrees take from it, where it is in none
   };
@@ -42,8 +37,6 @@ class SinglePrecisionFactor {
   /// Rows of a supernode that are not its own columns, ascending.
   const int* rows_below(int supernode) const;
   Eigen::Map<const Eigen::MatrixXf> block(int supernode) const;
-  std::vector<int> first_descendants() const;
-  void share_out();
   template <class Work>
   void for_shares(const Work& work);
   void forward(int begin, int end, int end_column, Share& share);

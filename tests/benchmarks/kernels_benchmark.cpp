@@ -322,7 +322,7 @@ void factorize_and_solve(benchmark::State& state) {
   Vector gradient, right_hand_side, solution;
   assembly.hessian(step.x, Curvature::positive_semidefinite, &gradient);
   assembly.to_ordered(gradient, right_hand_side);
-  Cholesky cholesky(assembly.matrix(), 1);
+  Cholesky cholesky(assembly.matrix(), static_cast<int>(state.range(1)));
   for (auto _ : state) {
     if (!cholesky.factorize(assembly.matrix())) {
       state.SkipWithError("the matrix is not positive definite");
@@ -337,10 +337,9 @@ void factorize_and_solve(benchmark::State& state) {
       benchmark::Counter(cholesky.factor_flops() * 1e-9, benchmark::Counter::kIsIterationInvariantRate);
 }
 BENCHMARK(factorize_and_solve)
-    ->ArgName("cells")
-    ->Arg(32)
-    ->Arg(64)
-    ->Arg(128)
+    ->ArgNames({"cells", "threads"})
+    ->ArgsProduct({{32, 64}, {1}})
+    ->ArgsProduct({{128, 256}, {1, 2}})
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
 
