@@ -150,7 +150,9 @@ class CentralPath {
     const Stopwatch watch(timings_.assembly);
     const bool exact = steps_ >= options_.exact_after && --wait_ < 0;
     curvature_ = exact ? Curvature::exact : Curvature::positive_semidefinite;
-    assembly_.hessian(x, curvature_, &gradient_);
+    // What bends little beside the inertia may be what it was at the start of the path.
+    assembly_.hessian(x, curvature_, &gradient_, !exact && has_weak_values_ && system_.iterates());
+    has_weak_values_ = !exact;
     complete_gradient();
     matrix_is_here_ = true;
   }
@@ -221,6 +223,7 @@ class CentralPath {
   double width_ = 0, start_width_ = 0, target_width_ = 0;
   double force_ = 0, worst_mismatch_ = 0, merit_ = 0;
   bool matrix_is_here_ = false;
+  bool has_weak_values_ = false;  // the assembly holds semidefinite ones of this path
   Curvature curvature_ = Curvature::positive_semidefinite;
   int steps_ = 0, wait_ = 0, patience_ = 1;
   Vector gradient_, right_hand_side_, step_, trial_;

@@ -25,6 +25,7 @@ class PreconditionedSystem final : public NewtonSystem {
 
   void allow(double force) override { allowed_ = force; }
   void start() override { direct_only_ = false; }
+  bool iterates() const override { return !direct_only_; }
   bool factorize(double shift) override;
   bool solve(const Vector& gradient, const Vector& violation, Vector& step, Vector& multiplier_step) override;
   Size size() const override;

@@ -88,14 +88,19 @@ void one_or_four(bool four, const Task& task) {
 struct Assembly::Data : AssemblyPattern {
   using AssemblyPattern::AssemblyPattern;
 
+  std::vector<double> weak_values;  // of the matrix, from the terms that couple weakly, when last evaluated
+
   double sum_of_values() const;
   template <class Real>
   void mask(const AssemblyTerm& term, Index element, double* hessian) const;
   template <int B>
-  void add_hessian(int thread, const Vector& x, Curvature curvature, Vector* gradient);
+  void add_gradient(int thread, const Vector& x, Vector& gradient) const;
+  template <int B>
+  void add_hessian(int thread, const Vector& x, Curvature curvature, Vector* gradient, bool hold_weak);
   template <int B, class Real>
-  void add_term(const AssemblyTerm& term, int thread, const Vector& x, Curvature curvature, Vector* gradient);
-  template <class Real>
+  void add_term(const AssemblyTerm& term, int thread, const Vector& x, Curvature curvature, bool curved,
+                Vector* gradient);
+  template <int B, class Real>
   void add_local_gradient(const AssemblyTerm& term, Index element, int thread, const double* part,
                           Vector& gradient) const;
   void clear_fixed(Vector& gradient) const;
@@ -142,24 +147,33 @@ double Assembly::value(const Vector& x) const {
   return d.sum_of_values();
 }
 
+template <int B>
+void Assembly::Data::add_gradient(int thread, const Vector& x, Vector& gradient) const {
+  for (const AssemblyTerm& term : terms) {
+    const Stencils& stencils = term.stencils();
+    one_or_four(term.takes_four(Curvature::positive_semidefinite), [&]<class Real>(Real) {
+      Scratch<max_stencil_width, Real> local(stencils.width()), part(stencils.width());
+      for_blocks<Real>(term, thread, threads, [&](Index block) {
+        stencils.gather(block, x, local.data());
+        Real* none = nullptr;
+        const Real value = evaluate(term, block, local.data(), part.data(), none, Curvature::positive_semidefinite);
+        for_lanes<Real>(term, block, [&](Index element, int lane) {
+          if (term.primary[element] == thread) term.values[element] = doubles(&value)[lane];
+          add_local_gradient<B, Real>(term, element, thread, doubles(part.data()) + lane, gradient);
+        });
+      });
+    });
+  }
+}
+
 double Assembly::gradient(const Vector& x, Vector& gradient) const {
   const Data& d = *data_;
   gradient.setZero(d.size);
   parallel_for(d.threads, [&](int thread) {
-    for (const AssemblyTerm& term : d.terms) {
-      const Stencils& stencils = term.stencils();
-      one_or_four(term.takes_four(Curvature::positive_semidefinite), [&]<class Real>(Real) {
-        Scratch<max_stencil_width, Real> local(stencils.width()), part(stencils.width());
-        for_blocks<Real>(term, thread, d.threads, [&](Index block) {
-          stencils.gather(block, x, local.data());
-          Real* none = nullptr;
-          const Real value = evaluate(term, block, local.data(), part.data(), none, Curvature::positive_semidefinite);
-          for_lanes<Real>(term, block, [&](Index element, int lane) {
-            if (term.primary[element] == thread) term.values[element] = doubles(&value)[lane];
-            d.add_local_gradient<Real>(term, element, thread, doubles(part.data()) + lane, gradient);
-          });
-        });
-      });
+    if (d.group_size == 3) {
+      d.add_gradient<3>(thread, x, gradient);
+    } else {
+      d.add_gradient<1>(thread, x, gradient);
     }
   });
   d.clear_fixed(gradient);
@@ -167,14 +181,14 @@ double Assembly::gradient(const Vector& x, Vector& gradient) const {
 }
 
 /// Adds those entries of an element's gradient, one lane of Reals, that `thread` owns.
-template <class Real>
+template <int B, class Real>
 void Assembly::Data::add_local_gradient(const AssemblyTerm& term, Index element, int thread, const double* part,
                                         Vector& gradient) const {
   const int* variables = term.stencils()[element];
   for (int k = 0; k < term.groups; ++k) {
-    const int p = position[variables[k * group_size] / group_size];
+    const int p = position[variables[k * B] / B];
     if (p < range[thread] || p >= range[thread + 1]) continue;
-    for (int i = k * group_size; i < (k + 1) * group_size; ++i) gradient[variables[i]] += part[i * lanes<Real>];
+    for (int i = k * B; i < (k + 1) * B; ++i) gradient[variables[i]] += part[i * lanes<Real>];
   }
 }
 
@@ -198,23 +212,30 @@ void Assembly::Data::mask(const AssemblyTerm& term, Index element, double* hessi
 }
 
 template <int B>
-void Assembly::Data::add_hessian(int thread, const Vector& x, Curvature curvature, Vector* total) {
-  double* values = matrix.valuePtr();
-  const int* starts = matrix.outerIndexPtr();
-  std::fill(values + starts[range[thread] * B], values + starts[range[thread + 1] * B], 0.0);
-  for (const AssemblyTerm& term : terms) {
-    if (!term.has_curvature() && !total) continue;
-    one_or_four(term.takes_four(curvature),
-                [&]<class Real>(Real) { add_term<B, Real>(term, thread, x, curvature, total); });
+void Assembly::Data::add_hessian(int thread, const Vector& x, Curvature curvature, Vector* total, bool hold_weak) {
+  const int first = matrix.outerIndexPtr()[range[thread] * B], last = matrix.outerIndexPtr()[range[thread + 1] * B];
+  double *values = matrix.valuePtr(), *held = weak_values.data();
+  if (hold_weak) {
+    std::copy(held + first, held + last, values + first);
+  } else {
+    std::fill(values + first, values + last, 0.0);
   }
+  const auto add = [&](const AssemblyTerm& term, bool curved) {
+    if (!curved && !total) return;
+    one_or_four(term.takes_four(curvature),
+                [&]<class Real>(Real) { add_term<B, Real>(term, thread, x, curvature, curved, total); });
+  };
+  const std::size_t weak = weak_terms;
+  for (std::size_t k = 0; k < weak; ++k) add(terms[k], terms[k].has_curvature() && !hold_weak);
+  if (weak > 0 && !hold_weak) std::copy(values + first, values + last, held + first);
+  for (std::size_t k = weak; k < terms.size(); ++k) add(terms[k], terms[k].has_curvature());
 }
 
 template <int B, class Real>
-void Assembly::Data::add_term(const AssemblyTerm& term, int thread, const Vector& x, Curvature curvature,
+void Assembly::Data::add_term(const AssemblyTerm& term, int thread, const Vector& x, Curvature curvature, bool curved,
                               Vector* total) {
   double* values = matrix.valuePtr();
   const int first = matrix.outerIndexPtr()[range[thread] * B], last = matrix.outerIndexPtr()[range[thread + 1] * B];
-  const bool curved = term.has_curvature();
   const Stencils& stencils = term.stencils();
   const int width = stencils.width(), blocks = term.groups * (term.groups + 1) / 2;
   constexpr int step = lanes<Real>;
@@ -224,7 +245,7 @@ void Assembly::Data::add_term(const AssemblyTerm& term, int thread, const Vector
     stencils.gather(block, x, local.data());
     evaluate(term, block, local.data(), gradient.data(), curved ? hessian.data() : nullptr, curvature);
     for_lanes<Real>(term, block, [&](Index element, int lane) {
-      if (total) add_local_gradient<Real>(term, element, thread, doubles(gradient.data()) + lane, *total);
+      if (total) add_local_gradient<B, Real>(term, element, thread, doubles(gradient.data()) + lane, *total);
       if (!curved) return;
       double* entries = doubles(hessian.data()) + lane;
       if (term.masked[element]) mask<Real>(term, element, entries);
@@ -248,14 +269,15 @@ void Assembly::clear_fixed(Vector& gradient) const {
   }
 }
 
-void Assembly::hessian(const Vector& x, Curvature curvature, Vector* gradient) {
+void Assembly::hessian(const Vector& x, Curvature curvature, Vector* gradient, bool hold_weak) {
   Data& d = *data_;
+  d.weak_values.resize(d.weak_terms > 0 ? static_cast<std::size_t>(d.matrix.nonZeros()) : 0);
   if (gradient) gradient->setZero(d.size);
   parallel_for(d.threads, [&](int thread) {
     if (d.group_size == 3) {
-      d.add_hessian<3>(thread, x, curvature, gradient);
+      d.add_hessian<3>(thread, x, curvature, gradient, hold_weak);
     } else {
-      d.add_hessian<1>(thread, x, curvature, gradient);
+      d.add_hessian<1>(thread, x, curvature, gradient, hold_weak);
     }
   });
   for (int slot : d.unit_diagonal) d.matrix.valuePtr()[slot] = 1.0;

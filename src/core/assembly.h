@@ -48,8 +48,8 @@ class Assembly {
   /// Sets the entries of fixed variables to zero, as gradient() does.
   void clear_fixed(Vector& gradient) const;
   /// Recomputes the values of matrix() at x and, where `gradient` is not null, the gradient as gradient() does, in the
-  /// same pass.
-  void hessian(const Vector& x, Curvature curvature, Vector* gradient = nullptr);
+  /// same pass. With `hold_weak` energies that couple weakly add to the matrix what they did in the last call without.
+  void hessian(const Vector& x, Curvature curvature, Vector* gradient = nullptr, bool hold_weak = false);
   const SparseMatrix& matrix() const;
   /// The largest fraction of dx that no guarded element objects to.
   double largest_step(const Vector& x, const Vector& dx) const;

@@ -19,6 +19,9 @@ AssemblyPattern::AssemblyPattern(Index variables, const std::vector<const Energy
     if (same == terms.end()) same = terms.insert(same, AssemblyTerm{});
     same->energies.push_back(energy);
   }
+  const auto strong =
+      std::stable_partition(terms.begin(), terms.end(), [](const AssemblyTerm& term) { return term.couples_weakly(); });
+  weak_terms = static_cast<std::size_t>(strong - terms.begin());
   choose_group_size();
   for (AssemblyTerm& term : terms) term.groups = term.stencils().width() / group_size;
   find_free_groups();

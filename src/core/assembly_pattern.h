@@ -47,10 +47,11 @@ struct AssemblyPattern {
   Index size = 0;
   int threads = 1;
   int group_size = 1;
-  std::vector<AssemblyTerm> terms;
-  std::vector<char> fixed;       // per variable
-  std::vector<int> free_groups;  // group ids in the matrix, ascending
-  std::vector<int> compact;      // group id -> index into free_groups, -1 where fully fixed
+  std::vector<AssemblyTerm> terms;  // those that couple weakly first
+  std::size_t weak_terms = 0;       // how many that are
+  std::vector<char> fixed;          // per variable
+  std::vector<int> free_groups;     // group ids in the matrix, ascending
+  std::vector<int> compact;         // group id -> index into free_groups, -1 where fully fixed
   GroupGraph graph;
   std::vector<int> position;       // group id -> position in the order, -1 where fully fixed
   std::vector<int> order;          // position -> group id

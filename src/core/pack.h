@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/types.h"
 
@@ -57,11 +58,6 @@ inline Pack square_root(Pack a) {
   Array root = Array(a[0], a[1], a[2], a[3]).sqrt();
   return lanes_of([&](int lane) { return root[lane]; });
 }
-/// atan2(y, x).
-inline double arc_tangent(double y, double x) { return std::atan2(y, x); }
-inline Pack arc_tangent(Pack y, Pack x) {
-  return lanes_of([&](int lane) { return std::atan2(y[lane], x[lane]); });
-}
 inline double absolute(double a) { return std::abs(a); }
 inline Pack absolute(Pack a) { return select(a < Pack(0.0), -a, a); }
 template <class Real>
@@ -71,6 +67,30 @@ Real larger(Real a, Real b) {
 template <class Real>
 Real smaller(Real a, Real b) {
   return select(b < a, b, a);
+}
+/// atan2(y, x) to 4e-16 of its magnitude; where both are zero or infinite, not a number.
+inline double arc_tangent(double y, double x) { return std::atan2(y, x); }
+inline Pack arc_tangent(Pack y, Pack x) {
+  constexpr double quarter_pi = 0.25 * std::numbers::pi;
+  const Pack u = absolute(x), v = absolute(y), large = larger(u, v), small = smaller(u, v);
+  // atan(small/large), from 0.66 on as pi/4 + atan((small - large)/(small + large)).
+  const auto steep = small > 0.66 * large;
+  const Pack t = select(steep, small - large, small) / select(steep, small + large, large), z = t * t;
+  // Rational approximation on |t| <= 0.66 of the Cephes library [Moshier 1989, atan.c].
+  const Pack p = (((-8.750608600031904122785e-1 * z - 1.615753718733365076637e1) * z - 7.500855792314704667340e1) * z -
+                  1.228866684490136173410e2) *
+                     z -
+                 6.485021904942025371773e1;
+  const Pack q =
+      ((((z + 2.485846490142306297962e1) * z + 1.650270098316988542046e2) * z + 4.328810604912902668951e2) * z +
+       4.853903996359136964868e2) *
+          z +
+      1.945506571482613964425e2;
+  Pack angle = t + t * z * (p / q);
+  angle = select(steep, quarter_pi + angle, angle);
+  angle = select(v > u, 2 * quarter_pi - angle, angle);
+  angle = select(x < Pack(0.0), 4 * quarter_pi - angle, angle);
+  return select(y < Pack(0.0), -angle, angle);
 }
 
 }  // namespace taut

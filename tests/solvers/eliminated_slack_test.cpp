@@ -99,6 +99,7 @@ TEST_P(SlackOfEveryConstraint, PrimalDualSystemForecastsTheForceOfTheSteppedMult
   slack_.set_linearisation(EliminatedSlack::Linearisation::central_path);
   const Vector x = posed(Pose::stretched), dx = RandomValues(3).vector(x.size());
   slack_.set_point(x, 0.01, 1);
+  expect_four_as_one(slack_, x, constraint_->name());
   // The system's left-hand side at dx, less the curvature of c itself, is the sum of w J^T (lambda + dlambda).
   Vector system = Vector::Zero(x.size()), forecast = Vector::Zero(x.size()), step;
   slack_.aim(0.004, 1, system);

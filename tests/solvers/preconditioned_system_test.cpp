@@ -57,6 +57,32 @@ TEST(PreconditionedSystem, LeavesBendingsOwnCouplingsOutOfTheFactor) {
   EXPECT_LT(system.size().factor_flops, 0.5 * sheet.cholesky->factor_flops());
 }
 
+TEST(Assembly, HoldsWhatBendingAddedBefore) {
+  CrumpledSheet sheet(1e-3), before(1e-3);
+  const auto semidefinite = Curvature::positive_semidefinite;
+  const Vector moved = sheet.x + 0.02 * RandomValues(4).vector(sheet.x.size());
+  before.assembly.hessian(moved, semidefinite);
+  const SparseMatrix anew = before.assembly.matrix();
+  sheet.assembly.hessian(sheet.x, semidefinite);
+  const SparseMatrix start = sheet.assembly.matrix();
+  Vector gradient, expected;
+  sheet.assembly.hessian(sheet.x, semidefinite, &gradient, true);
+  EXPECT_EQ((SparseMatrix(sheet.assembly.matrix() - start)).norm(), 0);
+  sheet.assembly.hessian(moved, semidefinite, &gradient, true);
+  before.assembly.gradient(moved, expected);
+  EXPECT_EQ((gradient - expected).norm(), 0);  // forces are of now
+  // The difference to the matrix of now is bending's alone.
+  Assembly bending(sheet.x.size(), {&sheet.bending}, {0, 1, 2}, 1);
+  const auto norm_of_bending = [&](const Vector& x) {
+    bending.hessian(x, semidefinite);
+    return bending.matrix().norm();
+  };
+  const double difference = SparseMatrix(sheet.assembly.matrix() - anew).norm();
+  EXPECT_GT(difference, 0);
+  EXPECT_LE(difference, norm_of_bending(sheet.x) + norm_of_bending(moved));
+  EXPECT_LT(difference, 0.1 * anew.norm());
+}
+
 TEST(PreconditionedSystem, AFewIterationsGiveTheStepOfTheWholeMatrix) {
   CrumpledSheet sheet(1e-6);
   for (const int threads : {1, 2}) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "support/random_values.h"
 
@@ -88,8 +89,36 @@ DerivativeReport check_derivatives(const Energy& energy, Index element, const Ve
   return report;
 }
 
+void expect_four_as_one(const Energy& energy, const Vector& x, const std::string& label) {
+  const Stencils& stencils = energy.stencils();
+  const int width = stencils.width();
+  for (const Curvature curvature : {Curvature::exact, Curvature::positive_semidefinite}) {
+    if (!energy.takes_four(curvature)) continue;
+    for (Index quad = 0; quad < quads(stencils.count()); ++quad) {
+      std::vector<Pack> four(width), four_gradient(width), four_hessian(width * width);
+      stencils.gather(quad, x, four.data());
+      const Pack value = energy.evaluate_four(quad, four.data(), four_gradient.data(), four_hessian.data(), curvature);
+      for (int lane = 0; lane < Pack::size; ++lane) {
+        const Index element = element_of(quad, lane, stencils.count());
+        Vector local(width), gradient(width), gradient_of_lane(width);
+        Matrix hessian(width, width), hessian_of_lane(width, width);
+        stencils.gather(element, x, local.data());
+        const double alone = energy.evaluate(element, local.data(), gradient.data(), hessian.data(), curvature);
+        for (int i = 0; i < width; ++i) gradient_of_lane[i] = four_gradient[i][lane];
+        for (int i = 0; i < width * width; ++i) hessian_of_lane.data()[i] = four_hessian[i][lane];
+        const std::string where = label + ", element " + std::to_string(element) + " in lane " + std::to_string(lane);
+        const double stiffness = hessian.norm(), force = gradient.norm() + x.norm() * stiffness;
+        EXPECT_NEAR(value[lane], alone, 1e-13 * (std::abs(alone) + x.norm() * force)) << where;
+        EXPECT_LE((gradient_of_lane - gradient).norm(), 1e-13 * force) << where;
+        EXPECT_LE((hessian_of_lane - hessian).norm(), 1e-12 * stiffness) << where;
+      }
+    }
+  }
+}
+
 void expect_derivatives(const Energy& energy, const Vector& x, SemidefiniteForm form, const std::string& label) {
   ASSERT_GT(energy.stencils().count(), 0) << label;
+  expect_four_as_one(energy, x, label);
   Vector local(energy.stencils().width());
   for (Index element = 0; element < energy.stencils().count(); ++element) {
     energy.stencils().gather(element, x, local.data());

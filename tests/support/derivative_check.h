@@ -36,8 +36,13 @@ struct DerivativeReport {
 /// Evaluates one element at the local variables `x` along random directions (the seed says which) and fits the slopes.
 DerivativeReport check_derivatives(const Energy& energy, Index element, const Vector& x, unsigned seed);
 
+/// Where the energy takes four elements at once, those are in value, gradient and Hessian what each alone is, to
+/// round-off.
+void expect_four_as_one(const Energy& energy, const Vector& x, const std::string& label);
+
 /// GoogleTest expectations on check_derivatives() for every element of `energy` at x (all variables): slopes
-/// above 1.9, 2.9 and 1.9, symmetry, and what `form` says. `label` tells a reader which case failed.
+/// above 1.9, 2.9 and 1.9, symmetry, what `form` says, and expect_four_as_one(). `label` tells a reader which case
+/// failed.
 void expect_derivatives(const Energy& energy, const Vector& x, SemidefiniteForm form, const std::string& label);
 
 /// sum_i lambda_i c_i(x) of a constraint with fixed multipliers, as an energy: its derivatives are J^T lambda and
