@@ -72,20 +72,20 @@ void path_hessian(Shape<R, W> shape, Real weight, double penalty, const Real* ja
 void EliminatedSlack::quad_multipliers(Index quad, Pack* lambda) const {
   const int rows = constraint_.rows();
   for (int i = 0; i < rows; ++i) {
-    lambda[i] = lanes_of([&](int lane) { return multipliers_[element_of(quad, lane, stencils().count()) * rows + i]; });
+    lambda[i] = lanes_of([&](int lane) { return multipliers_[element_of(quad, lane, weights_.size()) * rows + i]; });
   }
 }
 
 Pack EliminatedSlack::quad_weights(Index quad) const {
   return lanes_of([&](int lane) {
-    const Index element = element_of(quad, lane, stencils().count());
+    const Index element = element_of(quad, lane, weights_.size());
     return left_out(element) ? 0.0 : weights_[element];
   });
 }
 
 bool EliminatedSlack::quad_left_out(Index quad) const {
   for (int lane = 0; lane < Pack::size; ++lane) {
-    if (!left_out(element_of(quad, lane, stencils().count()))) return false;
+    if (!left_out(element_of(quad, lane, weights_.size()))) return false;
   }
   return true;
 }
@@ -108,7 +108,7 @@ void EliminatedSlack::linearise(Index quad, const Pack* x, const Pack* lambda) {
     std::array<double, max_rows * max_rows> inverse;
     for (int lane = 0; lane < Pack::size; ++lane) {
       const Index element = quad * Pack::size + lane;
-      if (element >= stencils().count() || left_out(element)) continue;
+      if (element >= weights_.size() || left_out(element)) continue;
       for (int i = 0; i < path.width; ++i) local[i] = x[i][lane];
       constraint_.evaluate(element, local.data(), one_y.data(), jacobian.data());
       for (int i = 0; i < rows; ++i) one_y[i] += lambda[i][lane] / penalty_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <type_traits>
 
 namespace taut {
 
@@ -62,32 +63,49 @@ double Inertia::kinetic_energy(const Vector& velocity) const {
   return 0.5 * velocity.dot(momentum);
 }
 
-double Inertia::evaluate(Index element, const double* x, double* gradient, double* hessian,
-                         Curvature /*curvature*/) const {
-  const int* variables = stencils_[element];
+/// Of one element, or of a quad of them.
+template <class Real>
+Real Inertia::evaluate_block(Index block, const Real* x, Real* gradient, Real* hessian) const {
   const int width = axes_ * nodes_;
-  std::array<double, max_stencil_width> offset, force;
-  for (int i = 0; i < width; ++i) offset[i] = x[i] - target_[variables[i]];
-  double value = 0;
+  const auto block_mass = [&](int i, int j) -> Real {
+    if constexpr (std::is_same_v<Real, double>) {
+      return mass(block, i, j);
+    } else {
+      return lanes_of([&](int lane) { return mass(element_of(block, lane, stencils_.count()), i, j); });
+    }
+  };
+  std::array<Real, max_stencil_width> offset, force;
+  stencils_.gather(block, target_, offset.data());
+  for (int i = 0; i < width; ++i) offset[i] = x[i] - offset[i];
+  Real value = 0;
   for (int i = 0; i < nodes_; ++i) {
     for (int axis = 0; axis < axes_; ++axis) {
-      double sum = 0;
-      for (int j = 0; j < nodes_; ++j) sum += mass(element, i, j) * offset[axes_ * j + axis];
+      Real sum = 0;
+      for (int j = 0; j < nodes_; ++j) sum += block_mass(i, j) * offset[axes_ * j + axis];
       force[axes_ * i + axis] = coefficient_ * sum;
       value += 0.5 * force[axes_ * i + axis] * offset[axes_ * i + axis];
     }
   }
   if (gradient) std::copy_n(force.begin(), width, gradient);
   if (hessian) {
-    std::fill_n(hessian, width * width, 0.0);
+    std::fill_n(hessian, width * width, Real(0.0));
     for (int i = 0; i < nodes_; ++i) {
       for (int j = 0; j < nodes_; ++j) {
-        for (int axis = 0; axis < axes_; ++axis)
-          hessian[axes_ * i + axis + (axes_ * j + axis) * width] = coefficient_ * mass(element, i, j);
+        const Real entry = coefficient_ * block_mass(i, j);
+        for (int axis = 0; axis < axes_; ++axis) hessian[axes_ * i + axis + (axes_ * j + axis) * width] = entry;
       }
     }
   }
   return value;
+}
+
+double Inertia::evaluate(Index element, const double* x, double* gradient, double* hessian,
+                         Curvature /*curvature*/) const {
+  return evaluate_block(element, x, gradient, hessian);
+}
+
+Pack Inertia::evaluate_four(Index quad, const Pack* x, Pack* gradient, Pack* hessian, Curvature /*curvature*/) const {
+  return evaluate_block(quad, x, gradient, hessian);
 }
 
 }  // namespace taut

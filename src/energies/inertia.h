@@ -37,8 +37,12 @@ class Inertia final : public Energy {
   const Stencils& stencils() const override { return stencils_; }
   double evaluate(Index element, const double* x, double* gradient, double* hessian,
                   Curvature curvature) const override;
+  bool takes_four(Curvature /*curvature*/) const override { return true; }
+  Pack evaluate_four(Index quad, const Pack* x, Pack* gradient, Pack* hessian, Curvature curvature) const override;
 
  private:
+  template <class Real>
+  Real evaluate_block(Index block, const Real* x, Real* gradient, Real* hessian) const;
   /// Entry (i, j) of the element's node mass matrix, kg.
   double mass(Index element, int i, int j) const { return mass_[(element * nodes_ + i) * nodes_ + j]; }
 
