@@ -95,7 +95,7 @@ bool EliminatedSlack::quad_left_out(Index quad) const {
 void EliminatedSlack::linearise(Index quad, const Pack* x, const Pack* lambda) {
   Path& path = *path_;
   const int rows = path.rows;
-  std::array<Pack, max_rows> c, y, nearest;
+  std::array<Pack, max_rows> c, y{}, nearest{};
   if (constraint_.takes_four()) {
     constraint_.evaluate_four(quad, x, c.data(), path.jacobian[quad]);
     for (int i = 0; i < rows; ++i) y[i] = c[i] + lambda[i] / penalty_;
@@ -143,8 +143,10 @@ EliminatedSlack::Mismatch EliminatedSlack::set_point(const Vector& x, double eps
       linearise(quad, local.data(), lambda.data());
       Pack square = 0;
       for (int i = 0; i < path.rows; ++i) square += path.mismatch[quad][i] * path.mismatch[quad][i];
-      for (int lane = 0; lane < Pack::size; ++lane)
-        path.square[element_of(quad, lane, path.square.size())] = square[lane] / (penalty_ * penalty_);
+      for (int lane = 0; lane < Pack::size; ++lane) {
+        const Index element = quad * Pack::size + lane;
+        if (element < path.square.size()) path.square[element] = square[lane] / (penalty_ * penalty_);
+      }
     }
   });
   Mismatch out;
@@ -241,7 +243,8 @@ void EliminatedSlack::multiplier_step(const Vector& dx, int threads, Vector& ste
       multiply(path.rows, path.inverse[quad], change.data(), out.data());
       for (int i = 0; i < path.rows; ++i) out[i] = penalty_ * (out[i] - change[i]) - path.correction[quad][i];
       for (int lane = 0; lane < Pack::size; ++lane) {
-        const Index element = element_of(quad, lane, path.square.size());
+        const Index element = quad * Pack::size + lane;
+        if (element >= path.square.size()) continue;
         for (int i = 0; i < path.rows; ++i) step[element * path.rows + i] = left_out(element) ? 0.0 : out[i][lane];
       }
     }
