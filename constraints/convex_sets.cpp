@@ -150,8 +150,8 @@ void SpectralBox::project_smoothed(const Real* z, double epsilon, Real* nearest,
   rate[0] = -rates.a;
   rate[1] = -root2 * rates.b;
   rate[2] = -rates.c;
-  const Real c = spectrum.cosine, mixed = half_root2 * spectrum.sine, plus = 0.5 + 0.5 * c, minus = 0.5 - 0.5 * c;
-  const std::array<Real, 3> e1{plus, mixed, minus}, e2{minus, -mixed, plus}, e12{-mixed, c, mixed};
+  const Real cc = spectrum.cc, ss = spectrum.ss, mixed = root2 * spectrum.cs;
+  const std::array<Real, 3> e1{cc, mixed, ss}, e2{ss, -mixed, cc}, e12{-mixed, spectrum.cosine, mixed};
   const Real inverse1 = 1.0 / s1.slope, inverse2 = 1.0 / s2.slope, inverse12 = 1.0 / omega;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j)

@@ -16,9 +16,12 @@ double step_before_collapse(const double* x, const double* dx) {
   if (!(square > 0)) return std::numeric_limits<double>::infinity();
   // Projected area over present area along the step: 1 + linear s + quadratic s^2; find the smallest s > 0 where it is
   // `kept`.
-  const double linear = (da.cross(b) + a.cross(db)).dot(normal) / square, quadratic = da.cross(db).dot(normal) / square;
-  const double constant = 1 - kept;
-  if (2 * std::abs(linear) + 4 * std::abs(quadratic) < constant) return std::numeric_limits<double>::infinity();
+  double linear = (da.cross(b) + a.cross(db)).dot(normal), quadratic = da.cross(db).dot(normal);
+  constexpr double constant = 1 - kept;
+  if (2 * std::abs(linear) + 4 * std::abs(quadratic) < constant * square)
+    return std::numeric_limits<double>::infinity();
+  linear /= square;
+  quadratic /= square;
   const double discriminant = linear * linear - 4 * quadratic * constant;
   if (discriminant < 0) return std::numeric_limits<double>::infinity();
   const double q = -0.5 * (linear + std::copysign(std::sqrt(discriminant), linear));

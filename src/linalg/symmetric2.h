@@ -45,11 +45,12 @@ struct Symmetric2 {
   Real a, b, c;
 };
 
-/// The eigenvalues of such a matrix are mean + radius and mean - radius; cosine and sine are of twice the angle of the
-/// first one's eigenvector (1 and 0 where they coincide).
+/// The eigenvalues mean + radius and mean - radius of such a matrix, and the projector [cc cs; cs ss] onto the first
+/// one's eigenvector (cosine c, sine s; 1 and 0 where the eigenvalues coincide). Small entries of it are accurate, too:
+/// a matrix put together with a zero eigenvalue is as singular as doubles allow.
 template <class Real>
 struct Spectrum2 {
-  Real mean, radius, cosine, sine;
+  Real mean, radius, cosine, cc, cs, ss;  ///< `cosine` of twice the angle
 
   explicit Spectrum2(const Symmetric2<Real>& m) {
     const Real half = 0.5 * (m.a - m.c);
@@ -58,14 +59,17 @@ struct Spectrum2 {
     const auto apart = radius > Real(0.0);
     const Real inverse = 1.0 / radius;
     cosine = select(apart, half * inverse, Real(1.0));
-    sine = select(apart, m.b * inverse, Real(0.0));
+    cs = select(apart, 0.5 * m.b * inverse, Real(0.0));
+    const Real large = 0.5 + 0.5 * absolute(cosine), small = cs * cs / large;
+    const auto first = cosine >= Real(0.0);
+    cc = select(first, large, small);
+    ss = select(first, small, large);
   }
   Real high() const { return mean + radius; }
   Real low() const { return mean - radius; }
   /// The matrix with these eigenvalues instead, and the same eigenvectors.
   Symmetric2<Real> with_values(Real first, Real second) const {
-    const Real middle = 0.5 * (first + second), deviation = 0.5 * (first - second);
-    return {middle + deviation * cosine, deviation * sine, middle - deviation * cosine};
+    return {first * cc + second * ss, (first - second) * cs, first * ss + second * cc};
   }
 };
 
