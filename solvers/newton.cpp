@@ -115,7 +115,8 @@ bool Newton::direction(const NewtonState& state, Counts& counts, Timings& timing
   if (!positive) {
     --wait_;
     assemble(Curvature::positive_semidefinite);
-    positive = solve(0);
+    // A matrix that is singular but for round-off has a factor, but no line search comes back from its steps.
+    positive = solve(0) && step_.lpNorm<Eigen::Infinity>() <= 1e10 * std::max(1.0, state.x.lpNorm<Eigen::Infinity>());
     double shift = 0;
     for (int attempt = 0; !positive && attempt < 12; ++attempt) {
       // Relative to the stiffest entry: 1e-10, 1e-9, ... Where all are zero, the gradient is followed.

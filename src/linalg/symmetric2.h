@@ -77,7 +77,9 @@ struct Spectrum2 {
 template <class Real>
 Symmetric2<Real> positive_part(const Symmetric2<Real>& m) {
   const Spectrum2<Real> spectrum(m);
-  return spectrum.with_values(larger(spectrum.high(), Real(0.0)), larger(spectrum.low(), Real(0.0)));
+  const Symmetric2<Real> part = spectrum.with_values(larger(spectrum.high(), Real(0.0)), Real(0.0));
+  const auto is_one = spectrum.low() >= Real(0.0);
+  return {select(is_one, m.a, part.a), select(is_one, m.b, part.b), select(is_one, m.c, part.c)};
 }
 
 /// The nearest positive semidefinite matrix to the symmetric `m`: its eigenvalues below zero become zero.
