@@ -12,6 +12,13 @@ extern "C" void openblas_set_num_threads(int);
 extern "C" void dpotrf_(const char* triangle, const int* n, double* a, const int* stride, int* info);
 
 namespace taut {
+namespace {
+
+/// Blocks of fewer columns have BLAS on one thread: two wait for each other at each call, and long where other programs
+/// run.
+constexpr int blas_threads_from = 256;
+
+}  // namespace
 
 SubtreeCholesky::SubtreeCholesky(cholmod_factor_struct& factor, int threads) : factor_(factor), threads_(threads) {
   const int supernodes = static_cast<int>(factor.nsuper);
@@ -166,6 +173,7 @@ bool SubtreeCholesky::factorize_top() {
       Eigen::Map<Vector>(block(s), size) += Eigen::Map<const Vector>(owed, size);
       owed += size;
     }
+    openblas_set_num_threads(columns(s) >= blas_threads_from ? threads_ : 1);
     map_rows(s, worker);
     apply_descendants(s, block(s), worker);
     if (!factorize_block(s)) return false;
@@ -179,7 +187,6 @@ bool SubtreeCholesky::factorize(const SparseMatrix& lower, double shift) {
   openblas_set_num_threads(1);
   parallel_for(static_cast<int>(workers_.size()),
                [&](int share) { positive[share] = factorize_share(share, lower, shift); });
-  openblas_set_num_threads(threads_);
   return positive[0] && positive[1] && factorize_top();
 }
 

@@ -11,11 +11,12 @@ namespace taut {
 
 /// The numeric phase of a supernodal Cholesky factorisation on two threads, left-looking [Ng and Peyton 1993]. Each
 /// thread factorises subtrees of the elimination tree of its own and sums what they owe to the columns above all
-/// subtrees [Geist and Ng 1989]; those follow, with BLAS on both threads. The same bits each time.
+/// subtrees [Geist and Ng 1989]; those follow, with BLAS on both threads where blocks are large. The same bits each
+/// time.
 class SubtreeCholesky {
  public:
-  /// `factor`, of CHOLMOD, has been analysed, has room for its values, and is borrowed. BLAS may use `threads` for the
-  /// columns above all subtrees.
+  /// `factor`, of CHOLMOD, has been analysed, has room for its values, and is borrowed. BLAS may use `threads` for
+  /// large blocks above all subtrees.
   SubtreeCholesky(cholmod_factor_struct& factor, int threads);
 
   /// Puts L of matrix + shift I into CHOLMOD's factor; false where a pivot is not positive. A NaN may pass, and is then
