@@ -45,7 +45,7 @@ class NewtonSystem {
   /// Of the next matrices: forces, in the Euclidean norm, N, that iterations may leave of a right-hand side. With 0,
   /// which is what holds at first, there are no iterations, and an indefinite matrix does not go unnoticed.
   virtual void allow(double /*force*/) {}
-  /// True where weak couplings (Energy::couples_weakly) have been left to iterations, so far in vain nowhere.
+  /// True while weak couplings (Energy::couples_weakly) are left to iterations: none has failed since start().
   virtual bool iterates() const { return false; }
   /// A new minimisation begins: nothing learned from earlier matrices counts.
   virtual void start() {}

@@ -68,6 +68,7 @@ template <class Real>
 Real smaller(Real a, Real b) {
   return select(b < a, b, a);
 }
+
 /// atan2(y, x) to 4e-16 of its magnitude; where both are zero or infinite, not a number.
 inline double arc_tangent(double y, double x) { return std::atan2(y, x); }
 inline Pack arc_tangent(Pack y, Pack x) {
