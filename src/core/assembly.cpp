@@ -186,17 +186,17 @@ void Assembly::Data::add_local_gradient(const AssemblyTerm& term, Index element,
                                         Vector& gradient) const {
   const int* variables = term.stencils()[element];
   for (int k = 0; k < term.groups; ++k) {
-    const int p = position[variables[k * B] / B];
-    if (p < range[thread] || p >= range[thread + 1]) continue;
+    if (threads > 1) {
+      const int p = position[variables[k * B] / B];
+      if (p < range[thread] || p >= range[thread + 1]) continue;
+    }
     for (int i = k * B; i < (k + 1) * B; ++i) gradient[variables[i]] += part[i * lanes<Real>];
   }
 }
 
 void Assembly::Data::clear_fixed(Vector& gradient) const {
-  for (int group : partly_fixed) {
-    for (int i = group * group_size; i < (group + 1) * group_size; ++i) {
-      if (fixed[i]) gradient[i] = 0;
-    }
+  for (Index i = 0; i < gradient.size(); ++i) {
+    if (fixed[static_cast<std::size_t>(i)]) gradient[i] = 0;
   }
 }
 
@@ -263,11 +263,7 @@ void Assembly::Data::add_term(const AssemblyTerm& term, int thread, const Vector
   });
 }
 
-void Assembly::clear_fixed(Vector& gradient) const {
-  for (Index i = 0; i < gradient.size(); ++i) {
-    if (data_->fixed[static_cast<std::size_t>(i)]) gradient[i] = 0;
-  }
-}
+void Assembly::clear_fixed(Vector& gradient) const { data_->clear_fixed(gradient); }
 
 void Assembly::hessian(const Vector& x, Curvature curvature, Vector* gradient, bool hold_weak) {
   Data& d = *data_;

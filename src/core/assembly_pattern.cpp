@@ -147,11 +147,9 @@ void AssemblyPattern::build_slots() {
     }
   }
   unit_diagonal.clear();
-  partly_fixed.clear();
   for (int group : free_groups) {
     for (int i = 0; i < group_size; ++i) {
       if (!fixed[group * group_size + i]) continue;
-      if (partly_fixed.empty() || partly_fixed.back() != group) partly_fixed.push_back(group);
       const int column = position[group] * group_size + i;
       unit_diagonal.push_back(starts[column] + i);
     }

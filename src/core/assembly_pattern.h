@@ -56,8 +56,7 @@ struct AssemblyPattern {
   std::vector<int> position;       // group id -> position in the order, -1 where fully fixed
   std::vector<int> order;          // position -> group id
   std::vector<int> range;          // thread t owns positions range[t] ... range[t + 1] - 1
-  std::vector<int> partly_fixed;   // group ids that keep unit rows
-  std::vector<int> unit_diagonal;  // and where the ones of those rows go
+  std::vector<int> unit_diagonal;  // where the ones of fixed variables' rows go, in groups not fixed as a whole
   SparseMatrix matrix;
 
   /// As Assembly's constructor; in the natural order.

@@ -11,6 +11,7 @@ void Stencils::add(std::span<const int> variables) {
                                 std::to_string(variables.size()));
   }
   variables_.insert(variables_.end(), variables.begin(), variables.end());
+  ++count_;
 }
 
 void Stencils::add_vertices(std::span<const int> vertices) {
@@ -21,6 +22,7 @@ void Stencils::add_vertices(std::span<const int> vertices) {
   for (int vertex : vertices) {
     for (int axis = 0; axis < 3; ++axis) variables_.push_back(3 * vertex + axis);
   }
+  ++count_;
 }
 
 }  // namespace taut

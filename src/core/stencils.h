@@ -22,7 +22,7 @@ class Stencils {
   bool operator==(const Stencils&) const = default;
 
   int width() const { return width_; }
-  Index count() const { return static_cast<Index>(variables_.size()) / width_; }
+  Index count() const { return count_; }
   const int* operator[](Index element) const { return variables_.data() + element * width_; }
 
   /// Copies the entries of x that `element` touches to `local` (width() doubles).
@@ -39,6 +39,7 @@ class Stencils {
 
  private:
   int width_;
+  Index count_ = 0;
   std::vector<int> variables_;
 };
 
