@@ -180,8 +180,8 @@ double Assembly::gradient(const Vector& x, Vector& gradient) const {
   return d.sum_of_values();
 }
 
-/// Adds those entries of an element's gradient, one lane of Reals, that `thread` owns: with one thread all of them, also
-/// those of fixed variables, which clear_fixed() clears.
+/// Adds those entries of an element's gradient, one lane of Reals, that `thread` owns: with one thread all of them,
+/// also those of fixed variables, which clear_fixed() clears.
 template <int B, class Real>
 void Assembly::Data::add_local_gradient(const AssemblyTerm& term, Index element, int thread, const double* part,
                                         Vector& gradient) const {
